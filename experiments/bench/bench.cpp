@@ -33,25 +33,6 @@
 namespace qddot::bench {
 namespace {
 
-// The rows of bench.csv, ratios.csv and same_steps.csv, each of a scene that runs to `until` [s].
-struct PointRow {
-  const std::string& scene;
-  double until;
-  const PeerLadder& ladder;
-  const Measured& point;
-};
-struct RatioRow {
-  const std::string& scene;
-  double until;
-  bool is_smallest;  // whether our methods run with all reductions
-  const Ratio& ratio;
-};
-struct SameStepsRow {
-  const std::string& scene;
-  double until;
-  const SameSteps& same;
-};
-
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 const char* reduced_name(bool smallest) { return smallest ? "all" : "pins"; }
@@ -62,84 +43,11 @@ std::string ratio_in_words(const Ratio& ratio) {
   return fmt::format("{}{:.{}f}", ratio.is_bound ? "> " : "", ratio.ratio, digits);
 }
 
-// A column of ratios.csv that shows a member of one of the ratio's two runs.
-template <class Member>
-auto of_run(const Measured* Ratio::*run, Member Measured::*member, Member missing) {
-  return [=](const RatioRow& r) { return r.ratio.*run ? r.ratio.*run->*member : missing; };
-}
-
-// A column of same_steps.csv that is empty unless both runs reached the end.
-template <class Value>
-auto if_good(const Value& value) {
-  return [=](const SameStepsRow& r) { return r.same.is_good() ? value(r.same) : nothing; };
-}
-
 double springs(const SameSteps& same) { return static_cast<double>(same.springs); }
 
-Columns<PointRow> point_columns() {
-  using Row = const PointRow&;
-  return {{"scene", [](Row r) { return r.scene; }},
-          {"until", [](Row r) { return r.until; }},
-          {"side", [](Row r) { return r.ladder.is_ours ? "ours" : "peer"; }},
-          {"solver", [](Row r) { return r.point.solver; }},
-          {"force", [](Row r) { return r.point.force; }},
-          {"reduced", [](Row r) { return reduced_name(r.ladder.is_smallest); }},
-          {"unknowns", [](Row r) { return r.point.unknowns; }},
-          {"knob", [](Row r) { return knob_name(r.point.knob); }},
-          {"value", [](Row r) { return r.point.value; }},
-          {"outcome", [](Row r) { return name(r.point.outcome); }},
-          {"error_position", [](Row r) { return r.point.is_good() ? r.point.error : nothing; }},
-          {"time_s", [](Row r) { return r.point.seconds; }},
-          {"timed_runs", [](Row r) { return r.point.timed; }},
-          {"steps", [](Row r) { return r.point.steps; }},
-          {"force_evaluations", [](Row r) { return r.point.force_evaluations; }}};
-}
-
-Columns<RatioRow> ratio_columns() {
-  using Row = const RatioRow&;
-  return {{"scene", [](Row r) { return r.scene; }},
-          {"until", [](Row r) { return r.until; }},
-          {"reduced", [](Row r) { return reduced_name(r.is_smallest); }},
-          {"accuracy", [](Row r) { return r.ratio.accuracy; }},
-          {"peer", [](Row r) { return r.ratio.peer; }},
-          {"force", [](Row r) { return r.ratio.force; }},
-          {"ratio", [](Row r) { return r.ratio.is_known() ? r.ratio.ratio : nothing; }},
-          {"is_at_least", [](Row r) { return r.ratio.is_bound ? 1 : 0; }},
-          {"peer_solver", of_run<std::string>(&Ratio::theirs, &Measured::solver, {})},
-          {"peer_time_s", of_run(&Ratio::theirs, &Measured::seconds, nothing)},
-          {"peer_error", of_run(&Ratio::theirs, &Measured::error, nothing)},
-          {"method", of_run<std::string>(&Ratio::ours, &Measured::solver, {})},
-          {"time_s", of_run(&Ratio::ours, &Measured::seconds, nothing)},
-          {"error", of_run(&Ratio::ours, &Measured::error, nothing)}};
-}
-
-Columns<SameStepsRow> same_steps_columns() {
-  using Row = const SameStepsRow&;
-  using Same = const SameSteps&;
-  return {{"scene", [](Row r) { return r.scene; }},
-          {"until", [](Row r) { return r.until; }},
-          {"peer", [](Row r) { return r.same.solver; }},
-          {"method", [](Row r) { return r.same.method; }},
-          {"reduced", [](Row r) { return reduced_name(r.same.is_smallest); }},
-          {"unknowns", [](Row r) { return r.same.unknowns; }},
-          {"springs", [](Row r) { return r.same.springs; }},
-          {"step_size", [](Row r) { return r.same.step_size; }},
-          {"steps", [](Row r) { return r.same.steps; }},
-          {"peer_outcome", [](Row r) { return name(r.same.peer_outcome); }},
-          {"outcome", [](Row r) { return name(r.same.outcome); }},
-          {"peer_step_s", if_good([](Same s) { return s.peer_step; })},
-          {"step_s", if_good([](Same s) { return s.step; })},
-          {"peer_springs_per_s", if_good([](Same s) { return springs(s) / s.peer_step; })},
-          {"springs_per_s", if_good([](Same s) { return springs(s) / s.step; })},
-          {"ratio", if_good([](Same s) { return s.peer_step / s.step; })},
-          {"position_difference", if_good([](Same s) { return s.difference; })},
-          {"distance", if_good([](Same s) { return s.distance; })}};
-}
-
-// Prints that row for people.
-void print_same_steps(const SameStepsRow& row) {
-  const SameSteps& s = row.same;
-  fmt::print("{}, {:g} s, {} steps of {} and of {} ({} unknowns): ", row.scene, row.until, s.steps,
+// Prints it for people.
+void print_same_steps(const std::string& scene, double until, const SameSteps& s) {
+  fmt::print("{}, {:g} s, {} steps of {} and of {} ({} unknowns): ", scene, until, s.steps,
              s.solver, s.method, s.unknowns);
   if (!s.is_good()) {
     fmt::print("{} and {}\n", name(s.peer_outcome), name(s.outcome));
@@ -184,7 +92,7 @@ std::vector<Ratio> ratios_of(const Comparison& c, bool smallest) {
 
 void print(const Comparison& c) {
   const std::string& scene = c.drawn.name;
-  for (const SameSteps& same : c.same_steps) print_same_steps({scene, c.until, same});
+  for (const SameSteps& same : c.same_steps) print_same_steps(scene, c.until, same);
   for (const bool smallest : {true, false}) {
     print_ratios(
         ratios_of(c, smallest),
@@ -219,9 +127,18 @@ int main(int argc, char** argv) {
   auto limit = p.number("--point-limit", Pace().limit, "seconds that one run may take")
                    .last()
                    .positive("the seconds a run may take");
-  auto& points = p.table("bench.csv", point_columns());
-  auto& all_ratios = p.table("ratios.csv", ratio_columns());
-  auto& same_steps = p.table("same_steps.csv", same_steps_columns());
+  auto& points = p.table("bench.csv", {"scene", "until", "side", "solver", "force", "reduced",
+                                       "unknowns", "knob", "value", "outcome", "error_position",
+                                       "time_s", "timed_runs", "steps", "force_evaluations"});
+  auto& all_ratios =
+      p.table("ratios.csv",
+              {"scene", "until", "reduced", "accuracy", "peer", "force", "ratio", "is_at_least",
+               "peer_solver", "peer_time_s", "peer_error", "method", "time_s", "error"});
+  auto& same_steps =
+      p.table("same_steps.csv",
+              {"scene", "until", "peer", "method", "reduced", "unknowns", "springs", "step_size",
+               "steps", "peer_outcome", "outcome", "peer_step_s", "step_s", "peer_springs_per_s",
+               "springs_per_s", "ratio", "position_difference", "distance"});
   return p.run(argc, argv, [&] {
     std::vector<Comparison> comparisons(scenes.begin(), scenes.end());
     nlohmann::json about = nlohmann::json::array();
@@ -249,13 +166,32 @@ int main(int argc, char** argv) {
             origin["scenes"].push_back(
                 {{"scene", provenance(p.command_line(), c.drawn).at("scene")}, {"until", c.until}});
             for (const PeerLadder& ladder : c.ladders) {
-              for (const Measured& point : ladder.points)
-                points.add({scene, c.until, ladder, point});
+              for (const Measured& m : ladder.points) {
+                points->row(scene, c.until, ladder.is_ours ? "ours" : "peer", m.solver, m.force,
+                            reduced_name(ladder.is_smallest), m.unknowns, knob_name(m.knob),
+                            m.value, name(m.outcome), m.is_good() ? m.error : nothing, m.seconds,
+                            m.timed, m.steps, m.force_evaluations);
+              }
             }
-            for (const SameSteps& same : c.same_steps) same_steps.add({scene, c.until, same});
+            for (const SameSteps& s : c.same_steps) {
+              const auto known = [&](double x) { return s.is_good() ? x : nothing; };
+              same_steps->row(scene, c.until, s.solver, s.method, reduced_name(s.is_smallest),
+                              s.unknowns, s.springs, s.step_size, s.steps, name(s.peer_outcome),
+                              name(s.outcome), known(s.peer_step), known(s.step),
+                              known(springs(s) / s.peer_step), known(springs(s) / s.step),
+                              known(s.peer_step / s.step), known(s.difference), known(s.distance));
+            }
+            Measured missing;
+            missing.error = missing.seconds = nothing;
             for (const bool smallest : {true, false}) {
-              for (const Ratio& ratio : ratios_of(c, smallest))
-                all_ratios.add({scene, c.until, smallest, ratio});
+              for (const Ratio& r : ratios_of(c, smallest)) {
+                const Measured& theirs = r.theirs ? *r.theirs : missing;
+                const Measured& ours = r.ours ? *r.ours : missing;
+                all_ratios->row(scene, c.until, reduced_name(smallest), r.accuracy, r.peer, r.force,
+                                r.is_known() ? r.ratio : nothing, r.is_bound ? 1 : 0, theirs.solver,
+                                theirs.seconds, theirs.error, ours.solver, ours.seconds,
+                                ours.error);
+              }
             }
           }
           origin["left_out"] = left_out.sentences();

@@ -1,8 +1,7 @@
 // LAMMPS' velocity Verlet over harmonic bonds, in a process of its own for each point, on one core.
-// Its time is that of its loop over the steps, without start,
-// reading and writing. LAMMPS reports the seconds of the loop and the processor's share of them.
-// The share has a resolution of some milliseconds. So a shorter loop is followed by longer ones,
-// which give the time of its steps.
+// Its time is that of its loop over the steps, without start, reading and writing. LAMMPS reports
+// the seconds of the loop and the processor's share of them. The share has a resolution of some
+// milliseconds. So a shorter loop is followed by longer ones, which give the time of its steps.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

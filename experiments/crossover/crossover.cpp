@@ -117,44 +117,9 @@ const std::vector<StiffFamily>& stiff_families() {
   return all;
 }
 
-// The family of that name; throws InvalidInput where there is none.
-const StiffFamily& stiff_family(const std::string& name) {
-  return named(name, stiff_families(), &StiffFamily::name, "--family", "a family");
-}
-
-// Rows of crossover.csv and kinds.csv.
-struct WinnerRow {
-  double ratio;
-  Placing placing;
-};
-struct KindRow {
-  double ratio, accuracy;
-  Kind kind;
-  const Point* fastest;
-};
-
 std::string name_of(const Point* point) { return point ? point->method->name : ""; }
 double time_of(const Point* point) {
   return point ? point->time : std::numeric_limits<double>::quiet_NaN();
-}
-
-Columns<WinnerRow> winner_columns() {
-  using Row = const WinnerRow&;
-  return {
-      {"stiffness_ratio", &WinnerRow::ratio},
-      {"accuracy", [](Row r) { return r.placing.accuracy; }},
-      {"method", [](Row r) { return name_of(r.placing.fastest); }},
-      {"time_s", [](Row r) { return time_of(r.placing.fastest); }},
-      {"runner_up", [](Row r) { return name_of(r.placing.runner_up); }},
-      {"margin", [](Row r) { return time_of(r.placing.runner_up) / time_of(r.placing.fastest); }}};
-}
-
-Columns<KindRow> kind_columns() {
-  return {{"stiffness_ratio", &KindRow::ratio},
-          {"accuracy", &KindRow::accuracy},
-          {"kind", [](const KindRow& r) { return kind_name(r.kind); }},
-          {"method", [](const KindRow& r) { return name_of(r.fastest); }},
-          {"time_s", [](const KindRow& r) { return time_of(r.fastest); }}};
 }
 
 std::vector<std::string> point_columns_with_ratio() {
@@ -164,14 +129,16 @@ std::vector<std::string> point_columns_with_ratio() {
 }
 
 // Writes what was measured at one ratio; kinds without a method among `competing` have no rows.
-void tabulate(const AtRatio& one, const std::vector<const Method*>& competing,
-              RowTable<WinnerRow>& winners, RowTable<KindRow>& of_kinds, Table& points) {
+void tabulate(const AtRatio& one, const std::vector<const Method*>& competing, Table& winners,
+              Table& of_kinds, Table& points) {
   for (const Placing& placing : one.placings) {
-    winners.add({one.ratio, placing});
+    const Point *fastest = placing.fastest, *next = placing.runner_up;
+    winners->row(one.ratio, placing.accuracy, name_of(fastest), time_of(fastest), name_of(next),
+                 time_of(next) / time_of(fastest));
     for (const Kind kind : kinds) {
       if (std::ranges::none_of(competing, [&](auto m) { return kind_of(*m) == kind; })) continue;
-      of_kinds.add(
-          {one.ratio, placing.accuracy, kind, placing.of_kind[static_cast<std::size_t>(kind)]});
+      const Point* own = placing.of_kind[static_cast<std::size_t>(kind)];
+      of_kinds->row(one.ratio, placing.accuracy, kind_name(kind), name_of(own), time_of(own));
     }
   }
   for (const Point& point : one.points) {
@@ -273,11 +240,14 @@ int main(int argc, char** argv) {
                     .check(require_each_once<double>);
   auto list = p.methods("a,b,...: the methods (default: all but the stock ways of SUNDIALS, _klu)");
   auto effort = p.effort({.seconds = 5, .repeats = 3});
-  auto& winners = p.table("crossover.csv", winner_columns());
-  auto& of_kinds = p.table("kinds.csv", kind_columns());
+  auto& winners = p.table(
+      "crossover.csv", {"stiffness_ratio", "accuracy", "method", "time_s", "runner_up", "margin"});
+  auto& of_kinds =
+      p.table("kinds.csv", {"stiffness_ratio", "accuracy", "kind", "method", "time_s"});
   auto& points = p.table("points.csv", point_columns_with_ratio());
   return p.run(argc, argv, [&] {
-    const StiffFamily& family = stiff_family(name);
+    const StiffFamily& family =
+        named(name, stiff_families(), &StiffFamily::name, "--family", "a family");
     std::vector<double> ascending = ratios;
     std::ranges::sort(ascending);
     std::vector<AtRatio> all;

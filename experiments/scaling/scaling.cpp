@@ -36,45 +36,6 @@
 namespace qddot::scaling {
 namespace {
 
-// A row of roofline.csv: f at one size, beside the peak of the machine [operations/s].
-struct RooflineRow {
-  ScalingSize size;
-  double peak;
-};
-
-Columns<PhaseCost> cost_columns() {
-  return {{"scene", &PhaseCost::scene},     {"nodes", &PhaseCost::nodes},
-          {"springs", &PhaseCost::springs}, {"method", &PhaseCost::method},
-          {"phase", &PhaseCost::phase},     {"seconds", &PhaseCost::seconds},
-          {"bytes", &PhaseCost::bytes}};
-}
-
-Columns<Exponent> exponent_columns() {
-  return {{"scene", &Exponent::scene},
-          {"method", &Exponent::method},
-          {"phase", &Exponent::phase},
-          {"exponent", [](const Exponent& e) { return e.fit.exponent; }},
-          {"low", [](const Exponent& e) { return e.fit.low; }},
-          {"high", [](const Exponent& e) { return e.fit.high; }},
-          {"theory", &Exponent::theory},
-          {"nodes_from", &Exponent::nodes_from},
-          {"nodes_to", &Exponent::nodes_to}};
-}
-
-Columns<RooflineRow> roofline_columns() {
-  using Row = const RooflineRow&;
-  return {{"scene", [](Row r) { return r.size.scene; }},
-          {"nodes", [](Row r) { return r.size.nodes; }},
-          {"springs", [](Row r) { return r.size.springs; }},
-          {"seconds", [](Row r) { return r.size.force.seconds; }},
-          {"springs_per_second", [](Row r) { return r.size.springs / r.size.force.seconds; }},
-          {"bytes_per_spring", [](Row r) { return r.size.force.bytes / r.size.springs; }},
-          {"flops_per_spring", [](Row r) { return r.size.force.flops / r.size.springs; }},
-          {"working_set_bytes", [](Row r) { return r.size.force.bytes; }},
-          {"triad_bytes_per_second", [](Row r) { return r.size.triad; }},
-          {"peak_flops_per_second", &RooflineRow::peak}};
-}
-
 void print(const std::vector<Exponent>& exponents) {
   fmt::print("\n{:<8} {:<20} {:<14} {:>8}   {:<14} {:>6}\n", "scene", "method", "phase", "exponent",
              "95 %", "theory");
@@ -84,11 +45,11 @@ void print(const std::vector<Exponent>& exponents) {
   }
 }
 
-void print(const std::vector<RooflineRow>& roofline, double peak) {
+// f at each size, beside the peak of the machine [operations/s].
+void print(const std::vector<ScalingSize>& sizes, double peak) {
   fmt::print("\nf: {:.3g} GFlop/s is the peak\n{:<8} {:>9} {:>12} {:>8} {:>8} {:>8}\n", 1e-9 * peak,
              "scene", "nodes", "M springs/s", "GB/s", "triad", "GFlop/s");
-  for (const RooflineRow& row : roofline) {
-    const ScalingSize& size = row.size;
+  for (const ScalingSize& size : sizes) {
     const auto& [seconds, bytes, flops] = size.force;
     fmt::print("{:<8} {:>9} {:>12.4g} {:>8.3g} {:>8.3g} {:>8.3g}\n", size.scene, size.nodes,
                1e-6 * size.springs / seconds, 1e-9 * bytes / seconds, 1e-9 * size.triad,
@@ -165,9 +126,14 @@ int main(int argc, char** argv) {
   auto no_reduce = p.words("--no-reduce", {"dimension", "mirror"},
                            "a,b,...: reductions of the scenes to leave out");
   p.out("the folder for the tables");
-  auto& costs = p.table("scaling.csv", cost_columns());
-  auto& exponents = p.table("exponents.csv", exponent_columns());
-  auto& roofline = p.table("roofline.csv", roofline_columns());
+  auto& costs =
+      p.table("scaling.csv", {"scene", "nodes", "springs", "method", "phase", "seconds", "bytes"});
+  auto& exponents = p.table("exponents.csv", {"scene", "method", "phase", "exponent", "low", "high",
+                                              "theory", "nodes_from", "nodes_to"});
+  auto& roofline =
+      p.table("roofline.csv", {"scene", "nodes", "springs", "seconds", "springs_per_second",
+                               "bytes_per_spring", "flops_per_spring", "working_set_bytes",
+                               "triad_bytes_per_second", "peak_flops_per_second"});
 
   return p.run(argc, argv, [&] {
     if (least > most)
@@ -194,13 +160,19 @@ int main(int argc, char** argv) {
           const ScalingResults& results = run.results();
           const double peak = peak_flops(look_for_peak);
           const auto fits = exponents_of(results.costs);
-          std::vector<RooflineRow> rows;
-          for (const ScalingSize& size : results.sizes) rows.push_back({size, peak});
-          for (const PhaseCost& cost : results.costs) costs.add(cost);
-          for (const Exponent& exponent : fits) exponents.add(exponent);
-          for (const RooflineRow& row : rows) roofline.add(row);
+          for (const auto& [scene, nodes, springs, method, phase, seconds, bytes] : results.costs)
+            costs->row(scene, nodes, springs, method, phase, seconds, bytes);
+          for (const Exponent& e : fits) {
+            exponents->row(e.scene, e.method, e.phase, e.fit.exponent, e.fit.low, e.fit.high,
+                           e.theory, e.nodes_from, e.nodes_to);
+          }
+          for (const ScalingSize& size : results.sizes) {
+            const auto& [seconds, bytes, flops] = size.force;
+            roofline->row(size.scene, size.nodes, size.springs, seconds, size.springs / seconds,
+                          bytes / size.springs, flops / size.springs, bytes, size.triad, peak);
+          }
           print(fits);
-          print(rows, peak);
+          print(results.sizes, peak);
           print(results.left_out);
           nlohmann::json origin = noted(p.origin(), results);
           origin["step_size"] = *step_size;

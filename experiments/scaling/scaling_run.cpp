@@ -11,6 +11,7 @@
 #include "experiments/kit/scene_choice.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"

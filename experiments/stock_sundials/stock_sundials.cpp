@@ -166,40 +166,14 @@ PairedRuns paired_runs(const Subject& subject, const Pair& pair, double rtol,
   return runs;
 }
 
-using Row = const PairedRuns&;
-
-// The columns of the parts of a run's time, by the one way or the other.
-Columns<PairedRuns> parts(const std::string& prefix, Way PairedRuns::*way) {
-  Columns<PairedRuns> all = {};
-  constexpr std::array names = {"force", "stiffness", "factorization", "solve", "rest"};
-  for (std::size_t i = 0; i < names.size(); ++i)
-    all += {{prefix + names[i], [=](Row r) { return (r.*way).shares[i]; }}};
-  return all;
-}
-
-Columns<PairedRuns> columns() {
-  Columns<PairedRuns> all = {
-      {"scene", &PairedRuns::scene},
-      {"method", &PairedRuns::method},
-      {"rtol", &PairedRuns::rtol},
-      {"outcome", [](Row r) { return name(r.structured.outcome); }},
-      {"stock_outcome", [](Row r) { return name(r.stock.outcome); }},
-      {"structured_s", [](Row r) { return r.structured.seconds; }},
-      {"stock_s", [](Row r) { return r.stock.seconds; }},
-      {"ratio", &PairedRuns::ratio},
-      {"structured_error", [](Row r) { return r.structured.error; }},
-      {"stock_error", [](Row r) { return r.stock.error; }},
-      {"steps", [](Row r) { return r.structured.counts.steps; }},
-      {"stock_steps", [](Row r) { return r.stock.counts.steps; }},
-      {"newton_iterations", [](Row r) { return r.structured.counts.newton_iterations; }},
-      {"stiffness_evaluations", [](Row r) { return r.structured.counts.stiffness_evaluations; }},
-      {"factorizations", [](Row r) { return r.structured.counts.factorizations; }},
-      {"stock_factorizations", [](Row r) { return r.stock.counts.factorizations; }},
-      {"indefinite_factorizations",
-       [](Row r) { return r.structured.counts.indefinite_factorizations; }}};
-  all += parts("structured_", &PairedRuns::structured);
-  all += parts("stock_", &PairedRuns::stock);
-  return all;
+void write(Csv& csv, const PairedRuns& r) {
+  const auto& [outcome, seconds, error, counts, shares] = r.structured;
+  const Way& stock = r.stock;
+  csv.row(r.scene, r.method, r.rtol, name(outcome), name(stock.outcome), seconds, stock.seconds,
+          r.ratio, error, stock.error, counts.steps, stock.counts.steps, counts.newton_iterations,
+          counts.stiffness_evaluations, counts.factorizations, stock.counts.factorizations,
+          counts.indefinite_factorizations, shares[0], shares[1], shares[2], shares[3], shares[4],
+          stock.shares[0], stock.shares[1], stock.shares[2], stock.shares[3], stock.shares[4]);
 }
 
 void print_header(const Subject& subject) {
@@ -209,7 +183,7 @@ void print_header(const Subject& subject) {
              "stock s", "n x n s", "ratio", "errors", "steps", "fact.", "stock", "n x n");
 }
 
-void print(Row r) {
+void print(const PairedRuns& r) {
   if (!r.is_good()) {
     fmt::print("{:<13} {:>6.0e}  {}, stock {}\n", r.method, r.rtol, name(r.structured.outcome),
                name(r.stock.outcome));
@@ -250,7 +224,33 @@ int main(int argc, char** argv) {
                    .last()
                    .positive("the seconds a run may take");
   p.out("the folder for structure.csv and reference.json");
-  auto& table = p.table<PairedRuns>("structure.csv", columns());
+  auto& table = p.table("structure.csv", {"scene",
+                                          "method",
+                                          "rtol",
+                                          "outcome",
+                                          "stock_outcome",
+                                          "structured_s",
+                                          "stock_s",
+                                          "ratio",
+                                          "structured_error",
+                                          "stock_error",
+                                          "steps",
+                                          "stock_steps",
+                                          "newton_iterations",
+                                          "stiffness_evaluations",
+                                          "factorizations",
+                                          "stock_factorizations",
+                                          "indefinite_factorizations",
+                                          "structured_force",
+                                          "structured_stiffness",
+                                          "structured_factorization",
+                                          "structured_solve",
+                                          "structured_rest",
+                                          "stock_force",
+                                          "stock_stiffness",
+                                          "stock_factorization",
+                                          "stock_solve",
+                                          "stock_rest"});
   return p.run(argc, argv, [&] {
     const Subject subject = subject_of(choice, until);
     require_reference_exists(subject);
@@ -269,7 +269,7 @@ int main(int argc, char** argv) {
                     return nlohmann::json(paired_runs(subject, pair, rtol, reference,
                                                       {.seconds = limit, .repeats = repeats}));
                   });
-              table.add(runs);
+              write(*table, runs);
               print(runs);
             }
           }

@@ -54,15 +54,6 @@ class Crossover:
     methods: tuple
 
 
-@dataclass(frozen=True)
-class Origin:
-    """Where times come from: whether they are work times costs, and the processor, if it is
-    said."""
-
-    is_work: bool
-    processor: str | None
-
-
 def read_scenes(path):
     """The scenes of fastest.csv in its order."""
     scenes = {}
@@ -77,26 +68,21 @@ def read_scenes(path):
         scene = scenes.setdefault(folder, Scene(folder, judge, [], {}, {}, {}))
         if judge != scene.judge:
             raise BadInput(f"{path}, line {line}: {folder} is judged by position and by energy.")
-        add_row(path, line, row, scene)
+        accuracy = parse(path, line, row, "accuracy", True)
+        key = scene_row.accuracy_key(accuracy)
+        if key in scene.accuracies:
+            raise BadInput(f"{path}, line {line}: {folder} has its row at {key:g} already.")
+        scene.accuracies.append(key)
+        if not row["method"]:  # none reached the accuracy
+            continue
+        time = parse(path, line, row, "time_s", True)
+        scene.front[key] = FrontPoint(accuracy, row["method"], time)
+        scene.lines[key] = line
+        if (row["margin"] or "").strip():
+            scene.margins[key] = parse(path, line, row, "margin", True)
     if not scenes:
         raise BadInput(f"{path} has no rows.")
     return list(scenes.values())
-
-
-def add_row(path, line, row, scene):
-    """Adds the cell of one row of fastest.csv to its scene."""
-    accuracy = parse(path, line, row, "accuracy", True)
-    key = scene_row.accuracy_key(accuracy)
-    if key in scene.accuracies:
-        raise BadInput(f"{path}, line {line}: {scene.folder} has its row at {key:g} already.")
-    scene.accuracies.append(key)
-    if not row["method"]:  # none reached the accuracy
-        return
-    time = parse(path, line, row, "time_s", True)
-    scene.front[key] = FrontPoint(accuracy, row["method"], time)
-    scene.lines[key] = line
-    if (row["margin"] or "").strip():
-        scene.margins[key] = parse(path, line, row, "margin", True)
 
 
 def read_crossovers(path):
@@ -131,18 +117,19 @@ def read_crossovers(path):
 
 
 def read_origin(path):
-    """What sweep.json says of times; where it is not there, they were measured."""
+    """What sweep.json says of times: whether they are work times costs, and the processor, if it is
+    said. Where the file is not there, they were measured."""
     try:
         with open(path, encoding="utf-8") as file:
             about = json.load(file)
         times, processor = about.get("times", "measured"), about.get("processor")
     except FileNotFoundError:
-        return Origin(False, None)
+        return False, None
     except (OSError, ValueError, AttributeError) as error:
         raise BadInput(f"{path} cannot be read: {error}.") from error
     if times not in ("measured", "work"):
         raise BadInput(f"{path}: times is {times!r}, not measured or work.")
-    return Origin(times == "work", str(processor) if processor else None)
+    return times == "work", str(processor) if processor else None
 
 
 def read_row(directory, scene):
@@ -188,7 +175,7 @@ def read(folder):
     path = os.path.join(folder, "fastest.csv")
     scenes = read_scenes(path)
     crossovers = read_crossovers(os.path.join(folder, "crossovers.csv"))
-    origin = read_origin(os.path.join(folder, "sweep.json"))
+    is_work, processor = read_origin(os.path.join(folder, "sweep.json"))
     rows, unreadable = read_rows(folder, path, scenes)
     processors = ", ".join(dict.fromkeys(row.processor for row in rows))
     return Study(
@@ -196,8 +183,8 @@ def read(folder):
         len(scenes),
         unreadable,
         sentences(crossovers),
-        origin.is_work,
-        origin.processor or processors,
+        is_work,
+        processor or processors,
         interrupted_by(path),
     )
 
