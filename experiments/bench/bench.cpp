@@ -24,11 +24,9 @@
 #include <fmt/format.h>
 
 #include "experiments/bench/comparison.hpp"
-#include "experiments/bench/peer_choice.hpp"
-#include "experiments/bench/tables.hpp"
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

@@ -37,13 +37,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/crossover/crossover_tables.hpp"
-#include "experiments/crossover/stiff_scenes.hpp"
-#include "experiments/kit/allowed_options.hpp"
 #include "experiments/crossover/pruning.hpp"
-#include "experiments/kit/named_choice.hpp"
-#include "experiments/kit/point_record.hpp"
-#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/interruption.hpp"

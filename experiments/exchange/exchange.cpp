@@ -31,11 +31,8 @@
 
 #include <fmt/format.h>
 
-#include "experiments/exchange/exchange_record.hpp"
-#include "experiments/exchange/exchange_tables.hpp"
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/named_choice.hpp"
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/reference_file.hpp"

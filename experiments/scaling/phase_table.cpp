@@ -5,7 +5,7 @@
 #include <ranges>
 #include <tuple>
 
-#include "experiments/kit/named_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "qddot/scene/generators.hpp"
 
 namespace qddot::scaling {

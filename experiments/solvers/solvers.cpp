@@ -18,7 +18,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/solvers/direct_solvers.hpp"
 #include "qddot/measure/motion/interruption.hpp"

@@ -21,7 +21,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/integrators/registry.hpp"

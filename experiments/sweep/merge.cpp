@@ -10,12 +10,9 @@
 
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/points.hpp"
-#include "experiments/kit/point_table.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/study.hpp"
-#include "experiments/sweep/machines.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "experiments/sweep/actions.hpp"
 #include "experiments/sweep/results.hpp"
 #include "experiments/sweep/status.hpp"

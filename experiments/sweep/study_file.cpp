@@ -11,8 +11,6 @@
 #include <fmt/ranges.h>
 
 #include "experiments/kit/scene_choice.hpp"
-#include "experiments/sweep/scene_entries.hpp"
-#include "experiments/kit/catalogue.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
