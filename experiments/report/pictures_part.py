@@ -3,7 +3,6 @@
 import base64
 import io
 import os
-from dataclasses import dataclass
 
 from PIL import Image
 
@@ -11,41 +10,27 @@ from PIL import Image
 COLORS = 128
 SMALL = 150_000  # bytes of a file that is taken as it is
 MOST = 2_500_000  # bytes of all pictures in a page
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture that a study may leave: the file's name, its title and what it shows in words."""
-
-    file: str
-    title: str
-    alt: str
-
-
-CHART = Picture("chart.png", "Time against error", "time of a run against its error, by method")
-PICTURES = (
-    Picture(
-        "stability_map.png",
+CHART = "chart.png"
+# The others that studies may leave: the title and what it shows in words.
+PICTURES = {
+    "stability_map.png": (
         "Where each method is stable",
         "outcome of whole runs by method and step size",
     ),
-    Picture(
-        "stability_modes.png",
+    "stability_modes.png": (
         "Which natural modes grow",
         "growth of the natural modes by method and step size",
     ),
-    Picture("modes.png", "The lowest natural modes", "shapes of the scene's lowest natural modes"),
-    Picture(
-        "energy_drift.png",
+    "modes.png": ("The lowest natural modes", "shapes of the scene's lowest natural modes"),
+    "energy_drift.png": (
         "Where the energy goes over a long run",
         "energy error over time, by method",
     ),
-    Picture(
-        "exchange.png",
+    "exchange.png": (
         "The energy that stiff springs exchange",
         "energies of stiff springs over time, by method and step size",
     ),
-)
+}
 
 
 def reduced(data):
@@ -62,12 +47,8 @@ def reduced(data):
         return min(data, buffer.getvalue(), key=len)
 
 
-def data_uri(directory, picture):
-    """The picture as a data URI; None where there is no such file. Raises OSError where it is no
-    picture."""
-    path = os.path.join(directory, picture.file)
-    if not os.path.exists(path):
-        return None
+def data_uri(path):
+    """The picture in a file as a data URI. Raises OSError where it is no picture."""
     with open(path, "rb") as file:
         data = reduced(file.read())
     return "data:image/png;base64," + base64.b64encode(data).decode("ascii")
@@ -75,22 +56,21 @@ def data_uri(directory, picture):
 
 def pictures_part(directory):
     """The page's `pictures`, the chart's data URI or None, and sentences on pictures left out."""
-    entries, notes, chart, size = [], [], None, 0
-    for picture in (CHART, *PICTURES):
+    uris, notes = {}, []
+    for name in (CHART, *PICTURES):
+        path = os.path.join(directory, name)
+        if not os.path.exists(path):
+            continue
         try:
-            uri = data_uri(directory, picture)
+            uri = data_uri(path)
         # Pillow raises these for a file that is no whole picture.
         except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
-            notes.append(f"{picture.file} is no picture that can be read.")
+            notes.append(f"{name} is no picture that can be read.")
             continue
-        if uri is None:
+        if sum(map(len, uris.values())) + len(uri) > MOST:
+            notes.append(f"{name} is too large for this page; it lies in the folder.")
             continue
-        if size + len(uri) > MOST:
-            notes.append(f"{picture.file} is too large for this page; it lies in the folder.")
-            continue
-        size += len(uri)
-        if picture is CHART:
-            chart = uri
-        else:
-            entries.append({"title": picture.title, "alt": picture.alt, "src": uri})
+        uris[name] = uri
+    chart = uris.pop(CHART, None)
+    entries = [dict(zip(("title", "alt"), PICTURES[name])) | {"src": uris[name]} for name in uris]
     return entries, chart, notes

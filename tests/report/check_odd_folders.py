@@ -121,10 +121,10 @@ class Missing(Folder):
     def test_infinite_and_missing_numbers_are_null(self):
         made_folder.make_folder(self.folder, has_motions=False)
         rows = self.rows()
-        rows[0] |= {"energy_growth": "inf", "error_velocity": "nan", "steps": ""}
+        rows[0] |= {"energy_growth": "inf", "setup_s": "nan", "steps": ""}
         self.rewrite("points.csv", rows)
         points = self.page().data["points"]
-        for name in ("energy_growth", "error_velocity", "steps"):
+        for name in ("energy_growth", "setup_s", "steps"):
             self.assertIsNone(points[name][0])
 
     def test_a_number_that_is_not_finite_is_no_json(self):

@@ -68,7 +68,6 @@ class Contents(Folder):
         methods = {method["name"]: method for method in data["methods"]}
         titles = {name: data["families"][m["family"]]["title"] for name, m in methods.items()}
         self.assertEqual((titles["verlet"], titles["ida"]), ("hand-written", "SUNDIALS"))
-        self.assertEqual(methods["ida_klu"]["stock_of"], "ida")
         self.assertEqual(methods["ida_klu"]["color"], methods["ida"]["color"])
         self.assertEqual(methods["symmetric8"]["line"], "eight, <b>bold</b>")
         self.assertLessEqual(sum(method["strong"] for method in data["methods"]), 12)
@@ -182,7 +181,6 @@ class Motions(Folder):
                 data["methods"][data["points"]["method"][point]]["name"], row["method"]
             )
             self.assertEqual(data["points"]["value"][point], float(row["value"]))
-            self.assertEqual(data["methods"][run["method"]]["name"], row["method"])
             self.assertEqual(len(run["energy"]["t"]), int(row["frames"]))
 
     def test_energies_have_the_digits_that_are_shown(self):
