@@ -14,7 +14,7 @@ function speeds(until) {
   for (let power = -9; power <= 3; power++)
     for (const digit of [1, 2, 5]) nice.push(digit * 10 ** power);
   const off = (speed) => Math.abs(Math.log10(speed) - wanted);
-  const at = nice.reduce((best, speed, i) => (off(speed) < off(nice[best]) ? i : best), 0);
+  const at = nice.map(off).indexOf(Math.min(...nice.map(off)));
   const offered = new Set([1, ...nice.slice(Math.max(0, at - 4), at + 4)]);
   return { nearest: nice[at], offered: [...offered].sort((a, b) => b - a) };
 }
@@ -84,13 +84,7 @@ export function playerOf(until, shown) {
 }
 
 const DECADES = 14;
-const TICKS = [
-  [-14, "≤ 1e-14"],
-  [-10, "1e-10"],
-  [-6, "1e-6"],
-  [-2, "1e-2"],
-  [0, "1"],
-];
+const TICKS = [-DECADES, -10, -6, -2, 0];
 // All about as light as each other, so that a face's shade stays to be seen, and none pale on
 // white.
 const STOPS = [
@@ -136,8 +130,8 @@ export function distanceScale(known) {
     pale.style.width = percent(Math.log10(known));
     bar.append(pale);
   }
-  const ticks = TICKS.map(([power, text]) => {
-    const tick = element("span", text);
+  const ticks = TICKS.map((power) => {
+    const tick = element("span", `${power === -DECADES ? "≤ " : ""}${words.number(10 ** power)}`);
     tick.style.left = percent(power);
     return tick;
   });

@@ -30,11 +30,7 @@ const ROUNDING = 1e-6;
 const MOST_BUTTONS = 6;
 
 const sentence = (text) => element("p.quiet", text);
-const lost = element(
-  "p.bad",
-  { role: "status", hidden: true },
-  "The browser took away what the motion is drawn with; it is drawn again when it comes back.",
-);
+const lost = byId("motion-lost");
 
 let stage = null;
 let player = null;

@@ -21,10 +21,17 @@ export function powerOfTen(value) {
   return power === 0 || power === 1 ? String(10 ** power) : `1e${power}`;
 }
 
+/** The title of an axis. */
+export const axisTitle = (text, standoff, size) => ({
+  text: plainWords(text),
+  standoff,
+  font: { size },
+});
+
 /** A logarithmic axis over a range of positive numbers, with ticks at decades in given words. */
-export function decades(low, high, inWords = powerOfTen) {
+export function decades(low, high, inWords = powerOfTen, most = MOST_TICKS) {
   const [from, to] = [Math.log10(low), Math.log10(high)];
-  const every = Math.ceil((to - from) / MOST_TICKS);
+  const every = Math.ceil((to - from) / most);
   const ticks = [];
   for (let power = Math.ceil(from / every) * every; power <= to; power += every)
     ticks.push(Number(`1e${power}`));

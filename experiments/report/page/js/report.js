@@ -40,7 +40,7 @@ export function whyNot(point, column) {
 }
 
 /** The knob of a run with its value: "h = 0.0005 s". */
-export const knobOf = (point) => words.knob(points.knob[point], points.value[point]);
+export const knobOf = (point) => points.knob_words[point];
 
 const motions = report.motion?.runs ?? [];
 
