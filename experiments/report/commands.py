@@ -73,7 +73,7 @@ class RunCommands:
         self.scene = scene_argument(study.sidecar)
         self.until = study.record.until
         self.options = study_options(study.sidecar)
-        self.takes = {name: note.get("takes") for name, note in study.method_notes.items()}
+        self.takes = {name: look(note, "takes") for name, note in study.method_notes.items()}
 
     def of_run(self, method, knob, value):
         """The line that repeats a run of a method at a value of its knob; None where what the run

@@ -35,12 +35,9 @@ class EncodedRun:
 def distance_unit(study, directory):
     """The largest displacement [m], by which distances are divided; None where it is not known or
     nothing moves."""
-    sources = (
-        read_json(os.path.join(directory, "motions.json")).get("displacement"),
-        look(study.reference, "scales", "displacement"),
-    )
-    known = [value for value in sources if value]
-    return known[0] if known else None
+    origin = read_json(os.path.join(directory, "motions.json"))
+    known = look(study.reference, "scales", "displacement")
+    return origin.get("displacement") or known or None
 
 
 def run_options(sidecar):
@@ -107,34 +104,29 @@ class Encoder:
         for index, run in enumerate(study.runs):
             self.points.setdefault((run.method, run.knob, run.value), index)
 
-    def entry(self, row, motion, frames):
-        """What the page says of a run beside its blobs."""
-        label = row["method"] or row["role"]
-        point = self.points.get((row["method"], row["knob"], row["value"]))
-        if point is not None:
-            label += f" at {self.knobs[point]}"
-        same = {name: row[name] for name in ("why", "outcome", "t_reached", "seconds")}
-        return same | {
-            "role": "reference" if row["role"] == "reference" else "run",
-            "point": point,
-            "label": label,
-            "times": motion.times[list(frames)].tolist(),
-            "energy": self.energies.get(row["file"]),
-        }
-
     def encode(self, run, frames):
         """A run at the frames of these numbers."""
         row, motion = self.opened[run]
         steps, left_box = quantised(motion.positions(frames), self.low, self.size)
         is_compared = self.unit and row["role"] != "reference"
         distances = motion.distances(frames) if is_compared else None
-        entry = self.entry(row, motion, frames) | {"left_box": left_box}
-        names = {"positions": f"p{run}", "distances": None}
+        point = self.points.get((row["method"], row["knob"], row["value"]))
+        label = row["method"] or row["role"]
+        entry = {name: row[name] for name in ("why", "outcome", "t_reached", "seconds")}
+        entry |= {
+            "role": "reference" if row["role"] == "reference" else "run",
+            "point": point,
+            "label": label if point is None else f"{label} at {self.knobs[point]}",
+            "times": motion.times[list(frames)].tolist(),
+            "energy": self.energies.get(row["file"]),
+            "left_box": left_box,
+            "positions": f"p{run}",
+            "distances": None if distances is None else f"d{run}",
+        }
         blobs = {f"p{run}": positions_blob(steps)}
         if distances is not None:
-            names["distances"] = f"d{run}"
             blobs[f"d{run}"] = distances_blob(distances / self.unit)
-        return EncodedRun(entry | names, blobs)
+        return EncodedRun(entry, blobs)
 
 
 def pack(study, opened, energies, notes, room):

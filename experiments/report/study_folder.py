@@ -56,12 +56,7 @@ class Study:
     @property
     def method_notes(self):
         """What points.json says of each method: {name: {"summary": ..., "takes": [...]}}."""
-        notes = self.sidecar.get("methods")
-        return {
-            note["name"]: note
-            for note in (notes if isinstance(notes, list) else [])
-            if isinstance(look(note, "name"), str)
-        }
+        return {look(note, "name"): note for note in self.sidecar.get("methods") or []}
 
 
 def read_study(directory):

@@ -33,8 +33,7 @@ const referenceLine = (x, y) => ({ x, y, mode: "lines", line: REFERENCE, hoverin
 
 const kinds = { ...KINDS, "the reference's total": REFERENCE.color };
 for (const [name, color] of Object.entries(kinds)) {
-  const sign = element("span", { "aria-hidden": "true" }, "━ ");
-  sign.style.color = color;
+  const sign = element("span", { "aria-hidden": "true", style: `color: ${color}` }, "━ ");
   byId("energies-key").append(element("span", sign, `${name}  `));
 }
 
