@@ -32,14 +32,6 @@ class EncodedRun:
         return len(entry) + sum(len(blob) + FRAME_OF_BLOB for blob in self.blobs.values())
 
 
-def distance_unit(study, directory):
-    """The largest displacement [m], by which distances are divided; None where it is not known or
-    nothing moves."""
-    origin = read_json(os.path.join(directory, "motions.json"))
-    known = look(study.reference, "scales", "displacement")
-    return origin.get("displacement") or known or None
-
-
 def run_options(sidecar):
     """The options of a sidecar's study that decide how each run goes; None where they are not
     known."""
@@ -93,12 +85,15 @@ def open_all(directory, rows):
 class Encoder:
     """Makes entries of a page's `motion` out of open files."""
 
-    def __init__(self, study, opened, energies):
+    def __init__(self, study, origin, opened, energies):
         self.opened = opened
         self.energies = energies
         first_is_reference = opened[0][0]["role"] == "reference"
         self.low, self.size = box_of([motion for _, motion in opened], first_is_reference)
-        self.unit = distance_unit(study, study.directory)
+        # The largest displacement [m], by which distances are divided; None where it is not known or
+        # nothing moves.
+        known = look(study.reference, "scales", "displacement")
+        self.unit = origin.get("displacement") or known or None
         self.knobs = [run.knob_words for run in study.runs]
         self.points = {}
         for index, run in enumerate(study.runs):
@@ -129,10 +124,10 @@ class Encoder:
         return EncodedRun(entry, blobs)
 
 
-def pack(study, opened, energies, notes, room):
+def pack(study, origin, opened, energies, notes, room):
     """The page's `motion` with these notes, and its blobs; without a motion, all notes."""
     first = opened[0][1]
-    encoder = Encoder(study, opened, energies)
+    encoder = Encoder(study, origin, opened, energies)
     blobs = {"s0": index_blob(first.springs)}
     if len(first.faces):
         blobs["f0"] = index_blob(first.faces)
@@ -147,9 +142,8 @@ def pack(study, opened, energies, notes, room):
     for run in runs:
         blobs |= run.blobs
     entries = [run.entry for run in runs]
-    dimension = look(study.sidecar, "scene", "dimension")
     part = {
-        "dimension": dimension if dimension in (1, 2, 3) else 3,
+        "dimension": look(study.sidecar, "scene", "dimension") or 3,
         "nodes": first.nodes,
         "springs": "s0",
         "faces": "f0" if "f0" in blobs else None,
@@ -192,11 +186,16 @@ def motion_part(study, room):
     try:
         rows = read_motion_rows(study.directory)
         opened, notes = open_all(study.directory, rows)
-        energies, more = energies_or_note(study.directory)
-        notes += missing_motions(origin) + more
+        notes += missing_motions(origin)
+        energies = {}
+        try:
+            energies = read_energies(study.directory)
+        except BadInput as error:
+            words = in_folder(error, study.directory)
+            notes.append(f"{words} The motions are shown without energies.")
         if not opened:
             return None, {}, notes
-        return pack(study, opened, energies, notes, room)
+        return pack(study, origin, opened, energies, notes, room)
     except BadInput as error:
         reason = in_folder(error, study.directory).removesuffix(".")
         return None, {}, [*notes, f"The motions cannot be shown: {reason}."]
@@ -210,12 +209,3 @@ def motion_part(study, room):
 def in_folder(error, directory):
     """The words of an error, in one line, in which files are named as seen from the folder."""
     return " ".join(str(error).replace(os.path.join(directory, ""), "").split())
-
-
-def energies_or_note(directory):
-    """The energies over time, and a sentence where their table is broken."""
-    try:
-        return read_energies(directory), []
-    except BadInput as error:
-        words = in_folder(error, directory)
-        return {}, [f"{words} The motions are shown without energies."]

@@ -1,6 +1,6 @@
 // The clock of a motion, with a slider, play and pause; and the colours of distances from the
 // reference, logarithmic: blue (1e-14), purple, orange (1).
-import { byId, element, options } from "./element.js";
+import { byId, options } from "./element.js";
 import { words } from "./words.js";
 
 // In s: about how long a motion plays at first.
@@ -76,7 +76,6 @@ slider.addEventListener("input", () => {
 });
 
 const DECADES = 14;
-const TICKS = [-DECADES, -10, -6, -2, 0];
 // All about as light as each other, so that a face's shade stays to be seen, and none pale on
 // white.
 const STOPS = [
@@ -112,32 +111,22 @@ export function colorTable() {
   return table;
 }
 
-/** A bar with its numbers, and a pointer at the largest distance, which `point(code)` moves;
-    `known`: the least distance that means something, or null. */
-export function distanceScale(known) {
-  const bar = element(
-    "div.scale-bar",
-    { style: `background: linear-gradient(to right, ${STOPS.join(", ")})` },
-    known > 0 && element("i.scale-unknown", { style: `width: ${percent(Math.log10(known))}` }),
-  );
-  const ticks = TICKS.map((power) => {
-    const least = power === -DECADES ? "≤ " : "";
-    return element("span", { style: `left: ${percent(power)}` }, least + words.number(10 ** power));
-  });
-  const pointer = element("i");
-  const sentence = element("p", { "aria-live": "off" });
-  const node = element(
-    "div.scale",
-    sentence,
-    element("div.scale-now", { "aria-hidden": "true" }, pointer),
-    bar,
-    element("div.scale-ticks", ticks),
-    known > 0 && element("p", `Pale: below ${words.about(known)} the reference itself may be off.`),
-  );
-  function point(code) {
-    pointer.style.left = percent(powerOf(code));
-    const far = code === 0 ? "at most 1e-14" : words.about(10 ** powerOf(code));
-    sentence.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
-  }
-  return { node, point };
+/** A bar of the colours with its numbers. */
+export const scale = byId("scale");
+const [sentence, now, bar, , pale] = scale.children;
+bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
+
+/** Makes distances pale below `known`, the least that means something; none where it is null. */
+export function markUnknown(known) {
+  const unknown = bar.firstElementChild;
+  unknown.hidden = pale.hidden = known === null;
+  unknown.style.width = percent(Math.log10(known));
+  pale.textContent = `Pale: below ${words.about(known)} the reference itself may be off.`;
+}
+
+/** Moves the pointer to the largest packed distance. */
+export function pointAt(code) {
+  now.firstElementChild.style.left = percent(powerOf(code));
+  const far = code === 0 ? "at most 1e-14" : words.about(10 ** powerOf(code));
+  sentence.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
 }

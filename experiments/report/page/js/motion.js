@@ -1,5 +1,14 @@
 // The motion of the chosen run beside the reference's, and the words on it.
-import { colorTable, distanceScale, goTo, player, setPlaying, startPlayer } from "./controls.js";
+import {
+  colorTable,
+  goTo,
+  markUnknown,
+  player,
+  pointAt,
+  scale,
+  setPlaying,
+  startPlayer,
+} from "./controls.js";
 import { button, byId, commandLine, element, options } from "./element.js";
 import {
   boundsOf,
@@ -34,8 +43,7 @@ const lost = byId("motion-lost");
 const controls = byId("motion-controls");
 
 let stage = null;
-// The parts {run, body, view} that are drawn, with their bounds, the scale of distances and how a
-// line is lifted.
+// The parts {run, body, view} that are drawn, with their bounds and how a line is lifted.
 let scene = null;
 let turn = 0;
 
@@ -182,7 +190,7 @@ function show(t) {
   for (const { run, body, view } of scene.parts) {
     place(run, body, t);
     const largest = paint(run, body, t);
-    if (largest !== null) scene.scale.point(largest);
+    if (largest !== null) pointAt(largest);
     body.update();
     const isOver = t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run));
     view.style.background = isOver ? "#fbe9e5" : "";
@@ -193,6 +201,8 @@ function show(t) {
 byId("closer").addEventListener("click", () => stage.zoom(1.25));
 byId("farther").addEventListener("click", () => stage.zoom(0.8));
 byId("reset").addEventListener("click", () => stage.look(scene.bounds));
+// The controls come back with a motion.
+section.replaceChildren();
 
 // Errors of the chart are those at the end. A run that blows up shows most while it is still in
 // the view: while its error is about as large as the motion.
@@ -239,16 +249,16 @@ export async function drawMotion() {
   const bounds = boundsOf(frames[0]);
   const lift = liftOf(bounds);
   const hasDistances = frames.some((run) => run.distances);
-  const scale = hasDistances ? distanceScale(knownTo()) : null;
+  markUnknown(knownTo());
   const parts = frames.map((run, at) => ({ run, body: bodies[at], view: views[at] }));
-  scene = { parts, lift, scale, bounds, table: colorTable() };
+  scene = { parts, lift, bounds, table: colorTable() };
   const until = Math.max(...frames.map((run) => run.times.at(-1)));
   // A single frame has no time to go through.
   if (until > 0) startPlayer(until, show);
   player.remove();
   if (until > 0) controls.prepend(player);
   const holder = element(views.length > 1 ? "div.views" : "div.views.alone", views);
-  say(above, holder, lost, controls, scale?.node, explanation(lift));
+  say(above, holder, lost, controls, hasDistances && scale, explanation(lift));
   const names = runs.map(({ label }) => label).join(" and ");
   stage.canvas.setAttribute("aria-label", `Motion of ${names}`);
   stage.show(holder, views, bodies);

@@ -74,11 +74,8 @@ export const ordinates = [
 function openingRun() {
   const answers = report.answers.map(({ point }) => point).filter((point) => point !== null);
   const kept = keptRuns.map(({ point }) => point);
-  return (
-    [answers.find((point) => kept.includes(point)), kept[0], answers[0], allRuns[0]].find(
-      (point) => point !== undefined,
-    ) ?? null
-  );
+  const known = answers.find((point) => kept.includes(point));
+  return known ?? kept[0] ?? answers[0] ?? allRuns[0] ?? null;
 }
 
 function addressed(hash) {
