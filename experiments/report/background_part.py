@@ -7,7 +7,6 @@ import shlex
 from style import number, seconds
 from study_folder import look
 
-
 STIFFNESS = {True: "constant", False: "changes with the motion"}
 
 

@@ -38,9 +38,9 @@ def reach_of(motion):
 
 
 def box_of(motions, first_is_reference):
-    """The lower corner [m] and the side [m] of the first motion's cube, widened for the others by no
-    more than MARGIN to each side. A first motion that is no reference's may have diverged: frames
-    far off its start do not count."""
+    """The lower corner [m] and the side [m] of the first motion's cube, widened for the others by
+    no more than MARGIN to each side. A first motion that is no reference's may have diverged:
+    frames far off its start do not count."""
     low, high = bounds(motions[0], math.inf if first_is_reference else reach_of(motions[0]))
     if not np.isfinite(low + high).all():
         raise BadInput("the first motion has no positions")

@@ -90,8 +90,8 @@ class Encoder:
         self.energies = energies
         first_is_reference = opened[0][0]["role"] == "reference"
         self.low, self.size = box_of([motion for _, motion in opened], first_is_reference)
-        # The largest displacement [m], by which distances are divided; None where it is not known or
-        # nothing moves.
+        # The largest displacement [m], by which distances are divided; None where it is not known
+        # or nothing moves.
         known = look(study.reference, "scales", "displacement")
         self.unit = origin.get("displacement") or known or None
         self.knobs = [run.knob_words for run in study.runs]

@@ -32,7 +32,7 @@ let t = 0;
 let playing = false;
 let before = null;
 
-/** Lets the player go through the times 0 to `end`; `show(t)` is called at each change of the time. */
+/** Lets the player go through the times 0 to `end`, and calls `show(t)` at each change of it. */
 export function startPlayer(end, show) {
   const { nearest, offered } = speeds(end);
   [until, shown, t] = [end, show, 0];

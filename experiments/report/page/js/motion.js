@@ -200,7 +200,7 @@ function show(t) {
 
 byId("closer").addEventListener("click", () => stage.zoom(1.25));
 byId("farther").addEventListener("click", () => stage.zoom(0.8));
-byId("reset").addEventListener("click", () => stage.look(scene.bounds));
+byId("reset").addEventListener("click", () => scene && stage.look(scene.bounds));
 // The controls come back with a motion.
 section.replaceChildren();
 
@@ -254,9 +254,11 @@ export async function drawMotion() {
   scene = { parts, lift, bounds, table: colorTable() };
   const until = Math.max(...frames.map((run) => run.times.at(-1)));
   // A single frame has no time to go through.
-  if (until > 0) startPlayer(until, show);
   player.remove();
-  if (until > 0) controls.prepend(player);
+  if (until > 0) {
+    startPlayer(until, show);
+    controls.prepend(player);
+  }
   const holder = element(views.length > 1 ? "div.views" : "div.views.alone", views);
   say(above, holder, lost, controls, hasDistances && scale, explanation(lift));
   const names = runs.map(({ label }) => label).join(" and ");
