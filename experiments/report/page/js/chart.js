@@ -6,7 +6,6 @@ import {
   NARROW,
   axisTitle,
   decades,
-  listenToMarks,
   plainWords,
   plot,
   powerOfTen,
@@ -292,7 +291,6 @@ export function drawChart() {
     { doubleClick: false },
   );
   if (isFirst) {
-    listenToMarks(drawing);
     drawing.on("plotly_relayout", offerWhole);
     drawing.on("plotly_doubleclick", showWhole);
   }

@@ -7,7 +7,6 @@ import {
   NARROW,
   axisTitle,
   decades,
-  listenToMarks,
   plainWords,
   plot,
   powerOfTen,
@@ -114,7 +113,6 @@ export function drawFailures() {
   const place = chosen ? knobs.indexOf(points.knob[state.run]) : 0;
   const narrow = drawing.clientWidth < NARROW;
   drawing.style.height = `${rows.at(-1).bottom + EDGES.t + EDGES.b}px`;
-  const isFirst = !drawing.data;
   plot(
     drawing,
     [
@@ -123,10 +121,7 @@ export function drawFailures() {
     ],
     {
       ...Object.fromEntries(
-        knobs.map((knob, at) => [
-          axisOf(at, "xaxis"),
-          knobAxis(over[at], knob, narrow),
-        ]),
+        knobs.map((knob, at) => [axisOf(at, "xaxis"), knobAxis(over[at], knob, narrow)]),
       ),
       yaxis: rowAxis(rows, narrow),
       // The knobs stand beside each other.
@@ -145,5 +140,4 @@ export function drawFailures() {
         })),
     },
   );
-  if (isFirst) listenToMarks(drawing);
 }
