@@ -1,6 +1,5 @@
 #include "experiments/bench/problem.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

@@ -1,16 +1,12 @@
 #include "experiments/kit/allowed_options.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
-#include <fmt/format.h>
-
 #include "experiments/kit/program.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
 namespace {

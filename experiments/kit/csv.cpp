@@ -5,10 +5,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <utility>
 
 #include <fmt/compile.h>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "qddot/scene/invalid_input.hpp"

@@ -12,7 +12,6 @@
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
-#include <vector>
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>

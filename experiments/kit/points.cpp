@@ -7,14 +7,10 @@
 #include <fstream>
 #include <limits>
 #include <set>
-#include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kit/csv.hpp"
 #include "experiments/kit/progress.hpp"
-#include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/judgement.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -147,21 +143,21 @@ nlohmann::json notes_on(const std::vector<Point>& points) {
 
 namespace {
 
-const std::vector<std::string> columns = {"method",
-                                          "value",
-                                          "outcome",
-                                          "t_reached",
-                                          "error_position",
-                                          "error_velocity",
-                                          "error_energy",
-                                          "error_energy_max",
-                                          "error_momentum_max",
-                                          "error_modal_shares",
-                                          "time_s",
-                                          "time_min_s",
-                                          "setup_s",
-                                          "steps",
-                                          "energy_growth"};
+const std::vector<std::string> columns_read = {"method",
+                                               "value",
+                                               "outcome",
+                                               "t_reached",
+                                               "error_position",
+                                               "error_velocity",
+                                               "error_energy",
+                                               "error_energy_max",
+                                               "error_momentum_max",
+                                               "error_modal_shares",
+                                               "time_s",
+                                               "time_min_s",
+                                               "setup_s",
+                                               "steps",
+                                               "energy_growth"};
 
 // The options of a study that decide how a method runs.
 constexpr std::array of_a_run = {"--no-reduce",  "--max-order",       "--stability-detection",
@@ -221,7 +217,7 @@ void take_options(const nlohmann::json& given, MeasuredPoints& study) {
 
 std::vector<Point> points_in(const std::string& folder) {
   const std::string path = folder + "/points.csv";
-  const WrittenTable table(path, columns);
+  const WrittenTable table(path, columns_read);
   std::vector<Point> points;
   for (std::size_t row = 0; row < table.size(); ++row) points.push_back(point_of(table, row, path));
   return points;

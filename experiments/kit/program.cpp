@@ -10,13 +10,11 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/scene/invalid_input.hpp"

@@ -1,7 +1,6 @@
 #include "experiments/kit/scene_choice.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 
 #include <fmt/format.h>

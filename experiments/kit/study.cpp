@@ -5,7 +5,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -15,7 +14,6 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

@@ -1,7 +1,6 @@
 #include "experiments/motion_files/frame.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>

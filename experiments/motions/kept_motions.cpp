@@ -7,9 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kit/csv.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/integrators/registry.hpp"

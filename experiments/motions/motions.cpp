@@ -13,7 +13,6 @@
 //     motions.csv lists them, motions_energy.csv has their energies. A run that fails has a motion
 //     up to where it did.
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>

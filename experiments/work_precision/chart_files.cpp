@@ -4,20 +4,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/csv.hpp"
 #include "experiments/kit/points.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "experiments/record/chart_record.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/reference/reference.hpp"
-#include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::work_precision {
