@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(up_to_its_limit_no_table_lets_a_vibration_grow_and_beyond_i
       const double limit = qddot::sundials::imaginary_stability(*table);
       BOOST_TEST(limit > 0.1);
       if (known) {
-        BOOST_TEST(limit >= *known);
+        BOOST_TEST(limit > *known - resolution);
         // y^4/8 = 1e-3 of order 2; the slope of |R| at the limit is 0.29 and 1.9.
         BOOST_TEST(limit < *known + (table->q == 2 ? 0.3 : 0.01));
       }

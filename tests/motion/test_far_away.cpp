@@ -3,7 +3,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/reduce/part.hpp"
-#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(far_away)
@@ -37,10 +36,6 @@ Scene strut(double off) {
   }
   scene.springs = {{{0, 1}, {1000, 1}}, {{1, 2}, {1000, 1}}};
   return scene;
-}
-
-std::vector<Node> end_of(const Scene& scene, const Reductions& reductions, double until) {
-  return nodes_after(scene, reductions, method_named("kahan_li8"), 1e-3, until);
 }
 
 const Eigen::Vector3d shift(1048576, -524288, 2097152);  // 2^20 and neighbours [m]
