@@ -1,0 +1,49 @@
+// The motion of a scene in a plane, on a line or in its mirrors is that of the scene in space.
+#include <boost/test/unit_test.hpp>
+
+#include "tests/integrators/scenes.hpp"
+#include "tests/scene/drawn.hpp"
+
+BOOST_AUTO_TEST_SUITE(reduced_motion)
+
+using namespace qddot;
+
+namespace {
+
+std::vector<Node> end_of(const Scene& scene, const Reductions& reductions) {
+  return nodes_after(scene, reductions, method_named("kahan_li8"), 1e-3, 0.4);
+}
+
+Scene rotated(const Scene& scene) { return turned(scene, some_rotation(), {1, 2, 3}); }
+
+void check_motion(const Scene& scene, Reduction reduction) {
+  BOOST_TEST(has(ReducedScene(scene), reduction));
+  const auto reduced = end_of(scene, {}), drawn = end_of(scene, Reductions().without(reduction));
+  // Rounding of the positions in 400 steps, relative to the largest displacement: these motions are
+  // regular and magnify it by less than a hundred.
+  BOOST_TEST(farthest(reduced, drawn) / farthest(reduced, scene.nodes) < 1e-10);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(motions_in_a_plane_or_on_a_line_are_those_in_space) {
+  const auto chain = [](int nodes) {
+    return draw("chain", {{"nodes", nodes}, {"stiffness", 1e4}});
+  };
+  for (const Scene& scene : {chain(12), draw("orbit"), draw("pair"), rotated(chain(6)),
+                             rotated(draw("pendulum", {{"speed", 0}}))}) {
+    check_motion(scene, Reduction::dimension);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_motion_is_its_own_mirror_image) {
+  const Scene odd = draw("cloth", {{"nodes", 7}}), even = draw("cloth", {{"nodes", 8}}),
+              lattice = draw("lattice",
+                             {{"nodes_x", 4}, {"nodes_y", 3}, {"nodes_z", 2}, {"stiffness", 500}});
+  for (const Scene& scene :
+       {odd, even, lattice, rotated(odd), square(), square(3), rotated(square())}) {
+    check_motion(scene, Reduction::mirror);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
