@@ -275,7 +275,7 @@ BOOST_AUTO_TEST_CASE(what_is_computed_from_k_is_refused_where_there_is_none) {
   BOOST_CHECK_THROW(lowest_modes(system, q, 1), std::invalid_argument);
   BOOST_CHECK_THROW(highest_modes(system, q, 1), std::invalid_argument);
   BOOST_CHECK_THROW(smallest_curvature(system, q), std::invalid_argument);
-  BOOST_CHECK_THROW(curvature_signs(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(qddot::curvature_signs(system, q), std::invalid_argument);
   BOOST_CHECK_THROW(find_equilibrium(system, q, 1), std::invalid_argument);
   BOOST_CHECK_THROW(LinearMotion{system}, std::invalid_argument);
 }

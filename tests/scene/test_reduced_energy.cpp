@@ -114,7 +114,8 @@ std::vector<Case> cases() {
     all.push_back({"random", random_scene(random, dimension), Reduction::pins, 7 * dimension});
   all.push_back(all.back());
   all.back().unknowns = 0;
-  for (Node& node : all.back().scene.nodes) node.pinned = true;
+  for (Node& node : all.back().scene.nodes)
+    node = {.position = node.position, .mass = node.mass, .pinned = true};
   return all;
 }
 
