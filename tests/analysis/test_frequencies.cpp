@@ -1,12 +1,16 @@
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/equilibrium.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/linear_motion.hpp"
 #include "qddot/analysis/natural_modes.hpp"
+#include "qddot/analysis/stability.hpp"
 #include "tests/measure.hpp"
 #include "tests/problems.hpp"
 #include "tests/scene/drawn.hpp"
 
-BOOST_AUTO_TEST_SUITE(natural_modes)
+BOOST_AUTO_TEST_SUITE(frequencies)
 
 using namespace qddot;
 
@@ -16,11 +20,12 @@ namespace {
 struct Case {
   std::shared_ptr<const System> system;
   Vec q;
+  int stretched_in = 0;  // the dimension, if all springs are stretched
 
   SymmetricMatrix k() const { return stiffness_at(*system, q); }
   // The largest w^2 by Gershgorin, which bounds the rounding of all.
   double width() const {
-    const double bound = qddot::frequency_bound(*system, q);
+    const double bound = frequency_bound(*system, q);
     return bound * bound;
   }
 };
@@ -94,6 +99,19 @@ std::vector<Case> large_cases() {
           scene_case("lattice", {{"nodes_x", 6}, {"nodes_y", 6}, {"nodes_z", 6}}, 1, false),
           scene_case("cloth", {{"nodes", 14}}, 0.8)};
 }
+
+// A row sum of |K| is at most 2 sum |B|_inf over the springs of its node, |B|_inf <= sqrt(D) |B|_2;
+// while w_max^2 >= trace(-K_ii) / (D m_i) >= sum |B|_2 / (D m_i) where every B is positive
+// semidefinite. So bound^2 / w_max^2 <= 2 D sqrt(D).
+double largest_ratio(int dimension) { return std::sqrt(2 * dimension * std::sqrt(dimension)); }
+
+// V = |q|^2 / 2, without K.
+class Plain final : public System {
+ public:
+  Plain() : System(Vec::Ones(2)) {}
+  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
+  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
+};
 
 }  // namespace
 
@@ -184,6 +202,7 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_just_below_the_true_one_and_the_bound)
       for (const int nodes : {1, 7, 60}) {
         const Problem p = random_network(random, dimension, nodes, stretch);
         cases.push_back(network_case(p.network, p.initial.q));
+        if (stretch > 1) cases.back().stretched_in = dimension;
       }
     }
   }
@@ -196,8 +215,9 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_just_below_the_true_one_and_the_bound)
     BOOST_TEST(at_least >= 0.9 * found);
     BOOST_TEST(found <= truth * (1 + 100 * eps));  // rounding of either
     BOOST_TEST(found >= truth * (1 - 1e-4));
-    BOOST_TEST(qddot::frequency_bound(*c.system, c.q) >=
-               found * (1 - 100 * eps));  // equal for one mass
+    const double bound = frequency_bound(*c.system, c.q);
+    BOOST_TEST(bound >= truth * (1 - 100 * eps));  // equal in 1D, but for the eigensolver
+    if (c.stretched_in > 0) BOOST_TEST(bound <= truth * largest_ratio(c.stretched_in));
   }
 }
 
@@ -207,6 +227,57 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_infinite_for_massless_nodes_and_zero_f
   network.links[0].law.stiffness = 0;
   BOOST_TEST(largest_frequency(*make_mass_spring(network), Vec{{0, 1}}) == 0);
   BOOST_TEST(largest_frequency(*make_mass_spring({.dimension = 2}), Vec()) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(bound_is_the_frequency_of_oscillator_and_equal_pair) {
+  const Oscillator o;
+  const auto [network, initial] = o.problem();
+  BOOST_TEST(std::abs(frequency_bound(*make_mass_spring(network), initial.q) - o.omega()) <
+             4 * eps * o.omega());
+  // Two free masses of 2 kg on 36 N/m: w^2 = k (1/m + 1/m) = 36, and a row of |K| sums up to 2 k.
+  const auto pair = make_mass_spring(
+      {.dimension = 1, .node_mass = Vec{{2, 2}}, .links = {{0, 1, {.stiffness = 36}}}});
+  BOOST_TEST(std::abs(frequency_bound(*pair, Vec{{0, 1}}) - 6) < 6 * 4 * eps);
+}
+
+BOOST_AUTO_TEST_CASE(bound_is_taken_where_it_is_asked_for) {
+  // w^2 = 3 c x^2 / m of a quartic spring without rest length and stiffness.
+  const auto system = make_mass_spring(
+      {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 3}}}});
+  BOOST_TEST(frequency_bound(*system, Vec::Constant(1, 0)) == 0);
+  BOOST_TEST(std::abs(frequency_bound(*system, Vec::Constant(1, 2)) - 6) < 6 * 4 * eps);
+}
+
+BOOST_AUTO_TEST_CASE(massless_node_makes_the_bound_infinite_only_with_stiffness) {
+  const auto bound = [](const SpringLaw& law) {
+    const auto system = make_mass_spring({.dimension = 1,
+                                          .node_mass = Vec{{0, 1, 1}},
+                                          .links = {{0, 1, law}, {1, 2, {.stiffness = 2}}}});
+    return frequency_bound(*system, Vec{{0, 1, 2}});
+  };
+  BOOST_TEST(std::isinf(bound({.stiffness = 1})));
+  BOOST_TEST(std::abs(bound({}) - 2) < 2 * 4 * eps);  // of the other two: w^2 = 2 k / m
+}
+
+BOOST_AUTO_TEST_CASE(bound_of_what_neither_moves_nor_pulls_is_zero) {
+  BOOST_TEST(frequency_bound(*make_mass_spring({.dimension = 3}), Vec()) == 0);
+  const auto free = make_mass_spring({.gravity = {0, 0, -9.81}, .node_mass = Vec::Ones(2)});
+  BOOST_TEST(frequency_bound(*free, Vec::LinSpaced(6, 0, 1)) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_computed_from_k_is_refused_where_there_is_none) {
+  const Plain system;
+  const Vec q = Vec::Ones(2);
+  BOOST_CHECK_THROW(frequency_bound(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(largest_frequency(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(frequency_at_least(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(quick_frequency(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(lowest_modes(system, q, 1), std::invalid_argument);
+  BOOST_CHECK_THROW(highest_modes(system, q, 1), std::invalid_argument);
+  BOOST_CHECK_THROW(smallest_curvature(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(qddot::curvature_signs(system, q), std::invalid_argument);
+  BOOST_CHECK_THROW(find_equilibrium(system, q, 1), std::invalid_argument);
+  BOOST_CHECK_THROW(LinearMotion{system}, std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,3 +1,4 @@
+// Deadlines, and interruptions of a thread of its own.
 #include <latch>
 #include <thread>
 
@@ -6,11 +7,30 @@
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 
-BOOST_AUTO_TEST_SUITE(own_interruption)
+BOOST_AUTO_TEST_SUITE(stops)
 
 using namespace qddot;
 
-BOOST_AUTO_TEST_CASE(it_ends_the_work_of_its_own_thread_alone) {
+BOOST_AUTO_TEST_CASE(a_deadline_asks_for_a_stop_when_its_time_has_come) {
+  const Deadline deadline(0.01);
+  std::latch passed(1);
+  const std::stop_callback wake(deadline.token(), [&] { passed.count_down(); });
+  passed.wait();  // as long as it takes
+  BOOST_TEST(deadline.passed());
+  BOOST_TEST(deadline.token().stop_requested());
+}
+
+BOOST_AUTO_TEST_CASE(destroyed_early_it_neither_waits_nor_asks) {
+  std::stop_token token;
+  for (int i = 0; i < 100; ++i) {
+    const Deadline deadline(1e300);
+    token = deadline.token();
+    BOOST_TEST(!deadline.passed());
+  }
+  BOOST_TEST(!token.stop_requested());
+}
+
+BOOST_AUTO_TEST_CASE(an_interruption_ends_the_work_of_its_own_thread_alone) {
   std::stop_source source;
   std::latch is_interrupted(1), is_looked_at(1);
   std::thread other([&] {
