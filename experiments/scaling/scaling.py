@@ -13,10 +13,8 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib import ticker
-from matplotlib.text import Text
 
-from chart import move_label
-from labels import Ink, line_label, place_labels
+from labels import Ink, line_label, move_labels
 from sheet import Sheet
 from style import FAINT, GRID, INK, Family, Look, decades, power_of_ten, seconds, use_style
 
@@ -103,9 +101,7 @@ def label_series(axes, drawn):
             continue
         anchors.append(pixels)
         texts.append(line_label(axes, words, look.color, look.text_color, FONT_SIZE))
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+    move_labels(texts, anchors, ink, axes.transData.inverted().transform)
 
 
 def law_of(scene, phase):
