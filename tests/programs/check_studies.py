@@ -116,12 +116,6 @@ class Tables(Programs):
                     for key in ("command_line", "version", "compiler", "cpu", "libraries", "date"):
                         self.assertTrue(origin[key])
 
-    def test_the_same_command_gives_the_same_table(self):
-        line = "symmetric_roots --samples 2 --out "
-        for out in ("one", "other"):
-            self.done(line + out)
-        self.assertEqual(read("one/roots.csv"), read("other/roots.csv"))
-
 
 class Orders(Programs):
     def test_every_order_that_is_told_is_the_methods(self):
