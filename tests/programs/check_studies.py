@@ -5,7 +5,7 @@ import os
 import unittest
 
 from programs import (
-    CHAOS, Programs, header, node, pin, read, scene, sidecar, spring, study, table, write,
+    CHAOS, Programs, header, node, pin, scene, sidecar, spring, study, table, write,
 )  # fmt: skip
 
 # n masses of 1 kg on springs of 100 N/m between two walls in 1D, at rest:
