@@ -64,7 +64,3 @@ class Formula(unittest.TestCase):
             "One\\_two of `a_b`:\n\n```text\nx = y * z\n  + w\n```\n\nand \\< three.\n\nFour.",
             method_formula.as_markdown(lines),
         )
-
-
-if __name__ == "__main__":
-    unittest.main()

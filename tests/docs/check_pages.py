@@ -167,7 +167,3 @@ class Methods(unittest.TestCase):
         printed = run("simulate --list-methods --csv").stdout
         names = {row["name"] for row in rows_of(printed)}
         self.assertEqual(names, {page.stem for page in METHOD_PAGES})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -139,7 +139,3 @@ class Words(unittest.TestCase):
         # An advantage that is lost again is none.
         lost = {1: (2, 1), 10: (2, 1), 100: (1, 2), 1000: (2, 1)}
         self.assertAlmostEqual(math.sqrt(1e5), self.crossing_of(lost), 6)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,8 +1,6 @@
-#!/usr/bin/python3
 """Reads .pc2 files of simulate and the .obj beside them back, by struct alone."""
 
 import struct
-import unittest
 
 import numpy as np
 
@@ -65,7 +63,3 @@ class PointCaches(Motions):
         _, positions, _ = self.table_of(words)
         self.assertEqual(len(positions), 6)
         assert_close(read_pc2("a.pc2"), positions, FLOAT)
-
-
-if __name__ == "__main__":
-    unittest.main()

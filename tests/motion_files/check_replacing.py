@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """What files simulate may replace by a motion, and what is left where the disk is full."""
 
 import glob
 import os
 import resource
-import unittest
 
 from motion_case import Motions, run_words
 from programs import run, write
@@ -39,7 +37,3 @@ class Replacing(Motions):
             )  # fmt: skip
             self.complains(ended, 3, "simulate: full", "File too large")
             self.assertEqual(glob.glob("full*"), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

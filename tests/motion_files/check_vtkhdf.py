@@ -1,9 +1,7 @@
-#!/usr/bin/python3
 """Reads .vtkhdf files of simulate back: layout, values, virtual datasets and the .xdmf."""
 
 import glob
 import tomllib
-import unittest
 
 import h5py
 import numpy as np
@@ -209,7 +207,3 @@ class Vtkhdf(Motions):
         # The next frame's kinetic energies would be beyond 32-bit floats.
         if frames < len(positions):
             assert (velocities[frames] ** 2).sum(axis=1).max() * 0.5 / 25 > np.finfo("f4").max / 2
-
-
-if __name__ == "__main__":
-    unittest.main()

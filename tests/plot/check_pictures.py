@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Checks that each study's script draws the results of a small study: every picture exists, is not
 empty and names the methods. The same numbers must give the same picture. The programs are in the
 folder QDDOT_BIN."""
@@ -62,6 +61,3 @@ class Pictures(unittest.TestCase):
 
 for name in PICTURES:
     setattr(Pictures, f"test_{name}", lambda self, study=name: self.check(study))
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import itertools
 import math
 import os
-import unittest
 
 from programs import CHAOS, Programs, header, read, rows_of, run, sidecar, study, table, write
 
@@ -383,7 +382,3 @@ class Advice(Programs):
         self.done("advice --cases 1 --first 11000000 --repeats 1 --reference-seconds 1 --out out")
         self.assertEqual(len(table("out/cases.csv")), 1)
         self.assertGreaterEqual(len(table("out/worth.csv")), 9)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,6 @@ import glob
 import os
 import signal
 import time
-import unittest
 
 from programs import Programs, sidecar, started, table, write
 
@@ -74,7 +73,3 @@ class Interruption(Programs):
         self.assertEqual(self.signalled(living, signal.SIGTERM).returncode, 130)
         left = "a.csv.part b.csv b.json long.csv long.json notes.part"
         self.assertEqual(sorted(os.listdir(".")), left.split())
-
-
-if __name__ == "__main__":
-    unittest.main()

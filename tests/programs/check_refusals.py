@@ -3,7 +3,6 @@
 import itertools
 import os
 import re
-import unittest
 
 from programs import Programs, node, pin, rows_of, run, scene, spring, write
 
@@ -381,7 +380,3 @@ class Refusals(Programs):
                 helped = self.done([program, word])
                 self.assertEqual(helped.stderr, "")
                 self.holds(helped.stdout, *options.split())
-
-
-if __name__ == "__main__":
-    unittest.main()

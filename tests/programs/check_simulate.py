@@ -3,7 +3,6 @@
 import math
 import os
 import re
-import unittest
 
 from programs import (
     Programs, header, node, pin, read, rows_of, run, scene, sidecar, spring, table, write,
@@ -344,7 +343,3 @@ class Warnings(Programs):
         ended = run(line)
         self.assertEqual(ended.returncode, 3)
         self.holds(ended.stderr, "simulate: t = ", "the run will take about ")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import math
 import os
 import shutil
-import unittest
 
 from programs import (
     CHAOS, Programs, header, node, pin, read, rows_of, run, scene, sidecar, spring, study, table,
@@ -416,7 +415,3 @@ class Motions(Programs):
         for name, said in ("points.json", "it is missing"), ("points.csv", "it cannot be read"):
             os.remove(name)
             self.refused(line, f"{name}: {said}")
-
-
-if __name__ == "__main__":
-    unittest.main()

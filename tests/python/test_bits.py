@@ -1,7 +1,6 @@
 """Results are the programs', to the last bit."""
 
 import re
-import unittest
 
 import numpy as np
 
@@ -141,7 +140,3 @@ class Bits(Programs):
         exact = qddot.reference(scene, 0.2)
         self.assertLess(exact.certified.position, 1e-10)
         self.assertLessEqual(exact.errors(answer).position, answer.error_estimate)
-
-
-if __name__ == "__main__":
-    unittest.main()

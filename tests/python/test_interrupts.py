@@ -257,7 +257,3 @@ print("exits")
                     self.assertTrue(np.array_equal(there.end.q, here.end.q))
                     self.assertEqual(there.counts, here.counts)
                     self.assertEqual(there.diagnosis(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

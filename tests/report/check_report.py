@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Whether a folder becomes one page that holds what the files say, and nothing else: made folders
 and a real study. The programs are in the folder QDDOT_BIN."""
 
@@ -336,7 +335,3 @@ class RealStudy(unittest.TestCase):
             line = line.replace("build/bin", BIN, 1)
             done = subprocess.run(line, shell=True, cwd=made.path, capture_output=True, check=False)
             self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
-
-
-if __name__ == "__main__":
-    unittest.main()
