@@ -1,16 +1,12 @@
 """The pages of methods: a new method gets one by itself, and one that says too little is refused."""
 
-import sys
 import unittest
-from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "docs/site"))
-import method_formula  # noqa: E402
-import method_pages  # noqa: E402
-import page_data  # noqa: E402
-import render  # noqa: E402
+import method_formula
+import method_pages
+import page_data
+import render
 
 FORMULA = "// A new method:\n//   q' = q + h v\n// It has order 1.\n\nMethod newest() {\n}\n"
 

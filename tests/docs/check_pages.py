@@ -3,18 +3,16 @@ run, and their sentences are short."""
 
 import re
 import subprocess
-import sys
 import tempfile
 import tomllib
 import unittest
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "docs/site"))
-import study as entries  # noqa: E402
-import page_text  # noqa: E402
-from programs import BIN, rows_of, run  # noqa: E402
+import page_text
+import study as entries
+from programs import BIN, rows_of, run
 
+ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 METHOD_PAGES = sorted((ROOT / "docs/methods").glob("*.md"))
 TEMPLATES = sorted((ROOT / "docs/pages").glob("*.md"))

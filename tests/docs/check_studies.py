@@ -5,18 +5,15 @@ import contextlib
 import io
 import json
 import math
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "docs/site"))
-import chart_data  # noqa: E402
-import page_data  # noqa: E402
-import study as entries  # noqa: E402
-import studies  # noqa: E402
+import chart_data
+import page_data
+import study as entries
+import studies
 
 
 class Studies(unittest.TestCase):
