@@ -34,7 +34,7 @@ def read_obj(path):
 
 class PointCaches(Motions):
     def faces_and_springs(self, name):
-        """The cells of the .obj; holds samples against the table, vertices against the first sample."""
+        """The cells of the .obj; samples are held against the table, vertices against the first."""
         _, positions, _ = self.table_of(run_words(name, f"--motion {name}.pc2"))
         samples = read_pc2(name + ".pc2")
         assert_close(samples, positions, FLOAT)

@@ -315,8 +315,9 @@ class RealStudy(unittest.TestCase):
 
     def test_simulate_takes_the_commands_of_the_runs(self):
         # Runs that take longer are points without an error; which ones, decides nothing here.
-        words = "work_precision --scene orbit --methods verlet,cvode_bdf,implicit_midpoint --until 0.5 --repeats 1"
-        words += " --max-order 3 --solver cholmod --accuracies 0.03 --point-limit 0.02 --out own"
+        words = "work_precision --scene orbit --methods verlet,cvode_bdf,implicit_midpoint"
+        words += " --until 0.5 --repeats 1 --max-order 3 --solver cholmod --accuracies 0.03"
+        words += " --point-limit 0.02 --out own"
         made = Study(words)
         study = read_study(made / "own")
         self.assertEqual([row["accuracy"] for row in answers.answers(study)], [0.03])
