@@ -1,6 +1,5 @@
 // A force law that is no spring: a chain in the plane with Lennard-Jones bonds between neighbours,
 // V(r) = 4 e ((s/r)^12 - (s/r)^6), charted by work and precision against a certified reference.
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>

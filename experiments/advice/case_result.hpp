@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/advice/drawn_case.hpp"
-#include "experiments/kit/columns.hpp"
+#include "experiments/kit/csv.hpp"
 #include "qddot/measure/advice/solve.hpp"
 
 namespace qddot::judged_advice {

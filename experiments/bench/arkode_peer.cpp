@@ -4,7 +4,6 @@
 #include <arkode/arkode_erkstep.h>
 
 #include "experiments/bench/peers.hpp"
-#include "experiments/bench/processor_time.hpp"
 #include "integrators/sundials/support.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 

@@ -5,7 +5,6 @@
 // so that the motion converges with order 1. Bullet computes l0 - l as (l0^2 - l^2)/(l0^2 + l^2) l,
 // which is right to first order in the strain, in floats.
 #include "experiments/bench/peers.hpp"
-#include "experiments/bench/processor_time.hpp"
 
 #ifdef QDDOT_BULLET
 

@@ -5,7 +5,6 @@
 #include <boost/numeric/odeint.hpp>
 
 #include "experiments/bench/peers.hpp"
-#include "experiments/bench/processor_time.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 
 namespace qddot::bench {

@@ -1,13 +1,29 @@
 // Integrators of our registry. Our own run on the smallest system of the scene or on the one that
 // peers get. SUNDIALS' implicit ones run with SUNDIALS' own matrix and solver, KLU on 2n x 2n.
 #include "experiments/bench/peers.hpp"
-#include "experiments/bench/processor_time.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::bench {
 namespace {
+
+// The system with the plain f in the place of its own, as far as SUNDIALS uses it. Borrows both.
+class WithPlainForce final : public System {
+ public:
+  WithPlainForce(const System& system, const PlainForce& plain)
+      : System(system.mass()), system_(system), plain_(plain) {}
+
+  void force(const ConstVec& q, MutableVec f) const override { plain_.force(q.data(), f.data()); }
+  double potential(const ConstVec& q) const override { return system_.potential(q); }
+  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
+  const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
+  bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
+
+ private:
+  const System& system_;
+  const PlainForce& plain_;
+};
 
 // A run of one integrator over either system, its end as that of all free nodes.
 Run run_of(const Method& method, const System& system, const ReducedScene& scene,
@@ -50,8 +66,7 @@ class Registered final : public Peer {
     if (force == ForceKind::ours)
       return run_of(method_, scene.system(), scene, problem, value, limit);
     const PlainForce plain(problem.start);
-    const auto system = with_plain_force(scene.system(), plain);
-    return run_of(method_, *system, scene, problem, value, limit);
+    return run_of(method_, WithPlainForce(scene.system(), plain), scene, problem, value, limit);
   }
 
  private:

@@ -1,6 +1,5 @@
 #include "experiments/bench/problem.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -62,6 +61,77 @@ Problem::Problem(const Scene& drawn, const Scene& started, double end, const std
 double Problem::error(const State& end) const {
   const double error = errors_between(scene, end, own.end, own.energy, own.scales).position;
   return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
+}
+
+PlainForce::PlainForce(const Scene& scene) : dimension_(scene.dimension), gravity_(scene.gravity) {
+  constexpr int none = -1;
+  std::vector<int> place(scene.nodes.size(), none);
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    if (scene.nodes[i].pinned) continue;
+    place[i] = static_cast<int>(mass_.size());
+    mass_.push_back(scene.nodes[i].mass);
+  }
+  for (const Spring& spring : scene.springs) {
+    const auto [a, b] = spring.nodes;
+    if (place[a] != none && place[b] != none) {
+      links_.push_back({place[a], place[b], spring.law});
+    } else if (place[a] != none) {
+      anchors_.push_back({place[a], scene.nodes[b].position, spring.law});
+    } else if (place[b] != none) {
+      anchors_.push_back({place[b], scene.nodes[a].position, spring.law});
+    }
+  }
+}
+
+template <int D>
+void PlainForce::sum(const double* q, double* f) const {
+  using Vector = Eigen::Matrix<double, D, 1>;
+  const auto x = [q](int i) { return Eigen::Map<const Vector>(q + D * i); };
+  const auto at = [f](int i) { return Eigen::Map<Vector>(f + D * i); };
+  const Vector gravity = gravity_.head<D>();
+  for (std::size_t i = 0; i < mass_.size(); ++i) at(static_cast<int>(i)) = mass_[i] * gravity;
+  for (const Link& link : links_) {
+    const Vector d = x(link.j) - x(link.i);
+    const double l = d.norm();
+    const Vector pull = l > 0 ? Vector(link.law.tension(l) / l * d) : Vector(Vector::Zero());
+    at(link.i) += pull;
+    at(link.j) -= pull;
+  }
+  for (const Anchor& anchor : anchors_) {
+    const Vector d = anchor.point.head<D>() - x(anchor.i);
+    const double l = d.norm();
+    if (l > 0) at(anchor.i) += anchor.law.tension(l) / l * d;
+  }
+}
+
+void PlainForce::force(const double* q, double* f) const {
+  dimension_ == 1 ? sum<1>(q, f) : dimension_ == 2 ? sum<2>(q, f) : sum<3>(q, f);
+}
+
+void PlainForce::acceleration(const double* q, double* a) const {
+  force(q, a);
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    for (int d = 0; d < dimension_; ++d) *a++ /= mass_[i];
+  }
+}
+
+Acceleration::Acceleration(const Scene& start, const System& system, ForceKind kind)
+    : plain_(start),
+      system_(system),
+      kind_(kind),
+      per_mass_(system.mass().cwiseInverse()),
+      q_(system.size()),
+      f_(system.size()) {}
+
+void Acceleration::operator()(const double* q, double* a) {
+  ++evaluations_;
+  if (kind_ == ForceKind::plain) {
+    plain_.acceleration(q, a);
+    return;
+  }
+  q_ = Vec::Map(q, q_.size());
+  system_.force(q_, f_);
+  Vec::Map(a, f_.size()) = per_mass_.cwiseProduct(f_);
 }
 
 }  // namespace qddot::bench

@@ -35,17 +35,10 @@ class Problem:
         self.to_node = np.array(data["to"], dtype=int)
         # Fixed points stand behind the free nodes; (B x)_s = x_to - x_from.
         count = len(self.stiffness)
-        springs = np.arange(count)
-        incidence = csr_matrix(
-            (
-                np.concatenate([-np.ones(count), np.ones(count)]),
-                (
-                    np.concatenate([springs, springs]),
-                    np.concatenate([self.from_node, self.to_node]),
-                ),
-            ),
-            shape=(count, self.nodes + len(self.points)),
-        )
+        signs, springs = np.repeat([-1.0, 1.0], count), np.tile(np.arange(count), 2)
+        ends = np.concatenate([self.from_node, self.to_node])
+        shape = (count, self.nodes + len(self.points))
+        incidence = csr_matrix((signs, (springs, ends)), shape=shape)
         self.difference = incidence[:, : self.nodes].tocsr()
         self.offset = incidence[:, self.nodes :] @ self.points
         self.gather = (-self.difference.T).tocsr()
@@ -124,7 +117,7 @@ def solved(problem, acceleration, data, method, rtol, limit):
 
     options = {"jac": lambda _, y: problem.jacobian(y[:n])} if method != "DOP853" else {}
     atol = rtol * np.concatenate([np.full(n, data["length"]), np.full(n, data["speed"])])
-    solution = solve_ivp(
+    return solve_ivp(
         rate,
         (0.0, data["until"]),
         np.concatenate([q0, v0]),
@@ -134,7 +127,6 @@ def solved(problem, acceleration, data, method, rtol, limit):
         t_eval=[data["until"]],
         **options,
     )
-    return solution
 
 
 def report(**words):

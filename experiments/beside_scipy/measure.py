@@ -24,6 +24,7 @@ import os
 import platform
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import scipy
@@ -165,45 +166,37 @@ def table(runs):
 
 def callbacks(options):
     """What a step of Verlet's method costs by whose f it calls."""
-    rows = []
-    for nodes in (2, 30, 100):
+    rows, h = [], 1e-6
+    keep = ["dimension", "mirror", "constant_stiffness"]
+    for nodes, steps in ((2, 20000), (30, 1000), (100, 100)):
         # Three unknowns; and cloths of 2694 and 29994.
         scene = qddot.scenes.chain(nodes=2) if nodes == 2 else qddot.scenes.cloth(nodes=nodes)
         p = own_forces.Cloth(scene, scene.name)
-        model = scene.model(keep=["dimension", "mirror", "constant_stiffness"])
-        steps = {2: 20000, 30: 1000, 100: 100}[nodes]
-        h = 1e-6
-        numba = own_forces.numba_cloth(p)
+        size = scene.model(keep=keep).size
 
-        def by(force, p=p, steps=steps):
+        def add(whose, run):
+            rows.append([size, whose, min(run() for _ in range(options.repeats)) / steps])
+
+        def by_module(problem, **more):
+            return qddot.solve(problem, "verlet", step_size=h, until=steps * h, **more).seconds
+
+        def by(force):
             system = qddot.System(p.mass, force, dimension=3, check=False)
-            run = lambda n: qddot.solve(
-                system, "verlet", step_size=h, until=n * h, q0=p.q0
-            )  # noqa: E731
-            return min(run(steps).seconds for _ in range(options.repeats)) / steps
+            return lambda: by_module(system, q0=p.q0)
 
-        def by_scene(steps=steps, scene=scene):
-            keep = ["dimension", "mirror", "constant_stiffness"]
-            run = lambda n: qddot.solve(
-                scene, "verlet", step_size=h, until=n * h, keep=keep
-            )  # noqa: E731
-            return min(run(steps).seconds for _ in range(options.repeats)) / steps
+        def by_loop():
+            short = SimpleNamespace(until=steps * h, q0=p.q0, v0=p.v0, mass=p.mass)
+            begin = time.perf_counter()
+            solvers.numpy_verlet(short, p.force, h)
+            return time.perf_counter() - begin
 
-        def by_loop(p=p, steps=steps):
-            times = []
-            for _ in range(options.repeats):
-                begin = time.perf_counter()
-                p_of = type("", (), dict(until=steps * h, q0=p.q0, v0=p.v0, mass=p.mass))
-                solvers.numpy_verlet(p_of, p.force, h)
-                times.append(time.perf_counter() - begin)
-            return min(times) / steps
-
-        rows.append([model.size, "f.fill(0), called by the module", by(lambda q, f: f.fill(0))])
-        rows.append([model.size, "NumPy's f, called by the module", by(written(p.force))])
-        rows.append([model.size, "NumPy's f, in a loop of NumPy", by_loop()])
+        add("f.fill(0), called by the module", by(lambda q, f: f.fill(0)))
+        add("NumPy's f, called by the module", by(written(p.force)))
+        add("NumPy's f, in a loop of NumPy", by_loop)
+        numba = own_forces.numba_cloth(p)
         if numba is not None:
-            rows.append([model.size, "Numba's f", by(numba)])
-        rows.append([model.size, "the scene's f", by_scene()])
+            add("Numba's f", by(numba))
+        add("the scene's f", lambda: by_module(scene, keep=keep))
     return rows
 
 

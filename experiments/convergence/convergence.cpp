@@ -20,7 +20,7 @@
 #include <fmt/format.h>
 
 #include "experiments/convergence/observed_orders.hpp"
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"

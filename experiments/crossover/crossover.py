@@ -131,21 +131,20 @@ def mixed(color, share):
 def regions(cells, ratios, accuracies):
     """Neighbouring cells of one method, as lists of (column, row)."""
     left = {
-        (i, j)
+        (i, j): cell.method
         for i, ratio in enumerate(ratios)
         for j, accuracy in enumerate(accuracies)
         if (cell := cells.get((ratio, accuracy))) and cell.method
     }
     while left:
         region, front = [], [min(left)]
-        method = cells[ratios[front[0][0]], accuracies[front[0][1]]].method
-        left.remove(front[0])
+        method = left.pop(front[0])
         while front:
             i, j = front.pop()
             region.append((i, j))
             for near in ((i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)):
-                if near in left and cells[ratios[near[0]], accuracies[near[1]]].method == method:
-                    left.remove(near)
+                if left.get(near) == method:
+                    del left[near]
                     front.append(near)
         yield method, region
 

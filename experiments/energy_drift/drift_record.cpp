@@ -1,6 +1,6 @@
 #include "experiments/energy_drift/drift_record.hpp"
 
-#include "experiments/kit/point_record.hpp"
+#include "experiments/kit/points.hpp"
 #include "qddot/integrators/registry.hpp"
 
 // nlohmann::json looks for these functions in the namespace of the types.

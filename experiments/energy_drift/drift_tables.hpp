@@ -1,6 +1,5 @@
 #pragma once
 
-#include "experiments/kit/columns.hpp"
 #include "experiments/kit/csv.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
 

@@ -22,7 +22,7 @@
 
 #include "experiments/energy_drift/drift_record.hpp"
 #include "experiments/energy_drift/drift_tables.hpp"
-#include "experiments/kit/method_options.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/scene/invalid_input.hpp"

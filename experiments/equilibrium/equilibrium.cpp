@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     progress().wipe();
     if (csv) {
       const auto nodes = reduced.expand({0, rest.q, Vec::Zero(rest.q.size())});
-      for (std::size_t i = 0; i < nodes.size(); ++i) write_node(*csv, i, nodes[i], drawn.dimension);
+      write_nodes(*csv, nodes, drawn.dimension);
       nlohmann::json origin = provenance(p.command_line(), drawn);
       origin["outcome"] = name(rest.outcome);
       origin["residual"] = rest.residual;

@@ -1,19 +1,28 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "qddot/integrators/integrator.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
+
+class Program;
+template <class T>
+class Argument;
 
 // Throws InvalidInput unless `value` is finite and greater than zero.
 void require_positive(double value, const std::string& option, const std::string& meaning);
 
 // Throws InvalidInput unless `value` is from `low` to `high`.
 void require_within(int value, int low, int high, const std::string& option);
-
-// Throws InvalidInput unless --repeats, the number of timed runs of a point, is 1 to 1000.
-void require_repeats(int repeats);
 
 // Throws InvalidInput, naming what is missing, if `text` is empty.
 void require_given(const std::string& text, const std::string& option, const std::string& meaning);
@@ -35,5 +44,44 @@ void require_atol(const Options& options);
 // A sentence on allowed tolerances that hardly make sense: an rtol above 0.1 or below 1e-14, an
 // atol above the size of positions or of velocities. Empty for all others.
 std::string tolerance_warning(const Options& options);
+
+// The entry of that name. Throws InvalidInput, with the names of all, if there is none; `option`
+// and `what` it names are for the sentence.
+template <class Entry>
+const Entry& named(const std::string& name, const std::vector<Entry>& all,
+                   std::string Entry::*own_name, const std::string& option,
+                   const std::string& what) {
+  const auto found = std::ranges::find(all, name, own_name);
+  if (found != all.end()) return *found;
+  std::vector<std::string> names;
+  for (const Entry& entry : all) names.push_back(entry.*own_name);
+  throw InvalidInput(
+      fmt::format("{}: {} is not {}; allowed are {}", option, name, what, fmt::join(names, ", ")));
+}
+
+// Throws InvalidInput if a value of the list is there twice.
+template <class T>
+void require_each_once(const std::vector<T>& values, const std::string& option) {
+  for (auto value = values.begin(); value != values.end(); ++value) {
+    if (std::find(values.begin(), value, *value) != value)
+      throw InvalidInput(fmt::format("{}: {} is named twice; allowed is once", option, *value));
+  }
+}
+
+// Throws InvalidInput unless each option that is given is allowed for some method, or for this one.
+void require_options(const Program& program, const Options& options);
+void require_options(const Program& program, const Options& options, const Method& method);
+
+// Those of these options that the method listens to.
+std::vector<std::string> options_taken_by(const Method& method);
+
+// Adds --accuracy-of.
+Argument<std::string> accuracy_of_option(Program& program);
+
+// The value of --accuracy-of; throws InvalidInput for anything but positions, path and energy.
+AccuracyOf accuracy_of(const std::string& of);
+
+// Throws InvalidInput unless the accuracy given to `option` is one that can be reached.
+void require_allowed_accuracy(double accuracy, const std::string& option = "--accuracy");
 
 }  // namespace qddot::inline kit

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
+#include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -85,6 +89,61 @@ class CsvFile : public Csv {
   }
 
   WholeFile file_, sidecar_;
+};
+
+// The columns of a table, each with its name and its value. A row is made from one `Source`.
+template <class Source>
+class Columns {
+ public:
+  struct Column {
+    // value: a member of Source, or a function of one; it gives a number or text.
+    template <class Value>
+    Column(std::string_view its_name, Value value)
+        : name(its_name), write([value = std::move(value)](Csv& csv, const Source& source) {
+            csv.field(std::invoke(value, source));
+          }) {}
+
+    std::string name;
+    std::function<void(Csv&, const Source&)> write;
+  };
+
+  Columns(std::initializer_list<Column> columns) : columns_(columns) {}
+  Columns& operator+=(const Columns& more) {
+    columns_.insert(columns_.end(), more.columns_.begin(), more.columns_.end());
+    return *this;
+  }
+
+  std::vector<std::string> header() const {
+    std::vector<std::string> names;
+    for (const Column& column : columns_) names.push_back(column.name);
+    return names;
+  }
+  void write_row(Csv& csv, const Source& source) const {
+    for (const Column& column : columns_) column.write(csv, source);
+    csv.end_row();
+  }
+
+ private:
+  std::vector<Column> columns_;
+};
+
+// A table that a program wrote (see csv.hpp), read back: a header row, then rows of equal length.
+class WrittenTable {
+ public:
+  // Throws InvalidInput if the file cannot be read, if a row has more or fewer fields than the
+  // header, or if a column of `needed` is missing. The sentence names the file and the problem.
+  WrittenTable(const std::string& path, const std::vector<std::string>& needed);
+
+  std::size_t size() const { return rows_.size(); }
+  // A field, by its row and its column's name, which must be one of `needed`.
+  const std::string& text(std::size_t row, const std::string& column) const;
+  // The field as a number, NaN if it is empty. Throws InvalidInput if it is anything else.
+  double number(std::size_t row, const std::string& column) const;
+
+ private:
+  std::string path_;
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::vector<std::string>> rows_;
 };
 
 }  // namespace qddot::inline kit

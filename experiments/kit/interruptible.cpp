@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/progress.hpp"
-#include "experiments/kit/unfinished.hpp"
+#include "experiments/kit/whole_file.hpp"
 
 namespace qddot::inline kit {
 namespace {

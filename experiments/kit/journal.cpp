@@ -12,12 +12,10 @@
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
-#include <vector>
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>
 
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

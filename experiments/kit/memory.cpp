@@ -4,7 +4,6 @@
 #include <fstream>
 #include <limits>
 #include <malloc.h>
-#include <string>
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -10,20 +10,20 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/memory.hpp"
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::inline kit {
 namespace {
+
+using Numbers = std::vector<double>;
+using Words = std::vector<std::string>;
 
 // Calls parse(), and says what is wrong in the words of an InvalidInput.
 template <class Parse>
@@ -37,6 +37,19 @@ void in_one_sentence(const Parse& parse) {
   } catch (const CLI::ParseError& error) {
     throw InvalidInput(error.what());
   }
+}
+
+template <class... Kinds>
+bool is_any_of(const std::exception& error) {
+  return (dynamic_cast<const Kinds*>(&error) || ...);
+}
+
+int status_of(const std::exception& error) {
+  if (is_any_of<InvalidInput, kernels::NoSuchKernels>(error)) return bad_input;
+  // What is asked for does not exist for the scene, or numbers of the scene overflow on the way.
+  if (is_any_of<CannotWrite, NoReference, std::domain_error, std::range_error>(error))
+    return end_not_reached;
+  return failed;
 }
 
 }  // namespace
@@ -79,25 +92,22 @@ Program::Program(const About& about)
 Program::~Program() = default;
 
 template <class T>
-T& Program::keep(T value) {
-  auto kept = std::make_shared<T>(std::move(value));
-  T& place = *kept;
-  values_.push_back(std::move(kept));
-  return place;
-}
-
-template <class T>
-Argument<T> Program::declare(const std::string& name, T value, const std::string& text,
-                             bool is_shown) {
+Argument<T> Program::declare(Text name, T value, Text text, bool is_shown) {
   Argument<T> argument = bind(name, keep(std::move(value)), text, is_shown);
   if constexpr (requires { typename T::value_type; } && !std::same_as<T, std::string>)
     option(name)->delimiter(',');
   return argument;
 }
+template Argument<bool> Program::declare(Text, bool, Text, bool);
+template Argument<double> Program::declare(Text, double, Text, bool);
+template Argument<int> Program::declare(Text, int, Text, bool);
+template Argument<std::string> Program::declare(Text, std::string, Text, bool);
+template Argument<Numbers> Program::declare(Text, Numbers, Text, bool);
+template Argument<std::vector<int>> Program::declare(Text, std::vector<int>, Text, bool);
+template Argument<Words> Program::declare(Text, Words, Text, bool);
 
 template <class T>
-Argument<T> Program::bind(const std::string& name, T& value, const std::string& text,
-                          bool is_shown) {
+Argument<T> Program::bind(Text name, T& value, Text text, bool is_shown) {
   if constexpr (std::same_as<T, bool>) {
     app_->add_flag(name, value, text);
   } else {
@@ -106,64 +116,17 @@ Argument<T> Program::bind(const std::string& name, T& value, const std::string& 
   }
   return {*this, name, value};
 }
-template Argument<bool> Program::bind(const std::string&, bool&, const std::string&, bool);
-template Argument<double> Program::bind(const std::string&, double&, const std::string&, bool);
-template Argument<int> Program::bind(const std::string&, int&, const std::string&, bool);
-template Argument<std::string> Program::bind(const std::string&, std::string&, const std::string&,
-                                             bool);
-template Argument<std::vector<double>> Program::bind(const std::string&, std::vector<double>&,
-                                                     const std::string&, bool);
-template Argument<std::vector<std::string>> Program::bind(const std::string&,
-                                                          std::vector<std::string>&,
-                                                          const std::string&, bool);
+template Argument<bool> Program::bind(Text, bool&, Text, bool);
+template Argument<double> Program::bind(Text, double&, Text, bool);
+template Argument<int> Program::bind(Text, int&, Text, bool);
+template Argument<std::string> Program::bind(Text, std::string&, Text, bool);
+template Argument<Numbers> Program::bind(Text, Numbers&, Text, bool);
+template Argument<Words> Program::bind(Text, Words&, Text, bool);
 
-Argument<double> Program::number(const std::string& name, const std::string& text) {
-  return declare(name, 0., text, false);
-}
-Argument<double> Program::number(const std::string& name, double value, const std::string& text) {
-  return declare(name, value, text, true);
-}
-Argument<int> Program::whole(const std::string& name, const std::string& text) {
-  return declare(name, 0, text, false);
-}
-Argument<int> Program::whole(const std::string& name, int value, const std::string& text) {
-  return declare(name, value, text, true);
-}
-Argument<std::string> Program::word(const std::string& name, const std::string& text) {
-  return declare(name, std::string(), text, false);
-}
-Argument<std::string> Program::word(const std::string& name, const std::string& value,
-                                    const std::string& text) {
-  return declare(name, value, text, true);
-}
-Argument<std::vector<double>> Program::numbers(const std::string& name, const std::string& text) {
-  return declare(name, std::vector<double>(), text, false);
-}
-Argument<std::vector<double>> Program::numbers(const std::string& name, std::vector<double> values,
-                                               const std::string& text) {
-  return declare(name, std::move(values), text, true);
-}
-Argument<std::vector<int>> Program::wholes(const std::string& name, std::vector<int> values,
-                                           const std::string& text) {
-  return declare(name, std::move(values), text, true);
-}
-Argument<std::vector<std::string>> Program::words(const std::string& name,
-                                                  const std::string& text) {
-  return declare(name, std::vector<std::string>(), text, false);
-}
-Argument<std::vector<std::string>> Program::words(const std::string& name,
-                                                  std::vector<std::string> values,
-                                                  const std::string& text) {
-  return declare(name, std::move(values), text, true);
-}
-Argument<std::vector<double>> Program::repeated_number(const std::string& name,
-                                                       const std::string& text) {
-  Argument<std::vector<double>> argument = bind(name, keep(std::vector<double>()), text);
+Argument<Numbers> Program::repeated_number(Text name, Text text) {
+  Argument<Numbers> argument = bind(name, keep(Numbers()), text);
   option(name)->expected(1)->take_all();
   return argument;
-}
-Argument<bool> Program::flag(const std::string& name, const std::string& text) {
-  return bind(name, keep(false), text);
 }
 
 Argument<SceneChoice> Program::scene() {
@@ -179,12 +142,6 @@ Argument<SceneChoice> Program::drawn_scene() {
   SceneChoice& choice = keep(SceneChoice());
   bind("--scene", choice.name, "a generator's name or a scene file");
   return {*this, "--scene", choice};
-}
-
-Argument<double> Program::until(const std::string& text) { return number("--until", text); }
-
-Argument<std::vector<std::string>> Program::methods(const std::string& text) {
-  return words("--methods", text);
 }
 
 Argument<std::vector<double>> Program::steps(std::vector<double> usual) {
@@ -215,11 +172,6 @@ Table& Program::table(const std::string& file, const std::vector<std::string>& h
 std::unique_ptr<WholeFile>& Program::file(const std::string& name, const std::string& beginning) {
   files_.push_back(std::make_unique<File>(name, beginning));
   return files_.back()->file;
-}
-
-void Program::instead(const std::string& name, const std::string& text,
-                      const std::function<void(const std::string&)>& act) {
-  instead_.emplace(word(name, text), act);
 }
 
 void Program::declare_threads() {
@@ -278,29 +230,20 @@ int Program::run(int argc, char** argv, const std::function<int()>& work) {
       require_positive(limit, "--time-limit", "the seconds that the program may take");
       run.end_after(limit);
     }
-    const int status = work_or_instead(work);
+    if (!instead_.empty() && has(instead_)) {
+      require_alone(instead_);
+    } else if (!meaning_of_folder_.empty()) {
+      require_given(folder_, "--out", meaning_of_folder_);
+    }
+    const int status = work();
     progress().wipe();
     return status;
   } catch (const Interrupted& error) {
     return complain(error.what(), error.status);
-  } catch (const CannotWrite& error) {
-    return complain(error.what(), end_not_reached);
-  } catch (const InvalidInput& error) {
-    return complain(error.what(), bad_input);
-  } catch (const kernels::NoSuchKernels& error) {
-    return complain(error.what(), bad_input);
-  } catch (const NoReference& error) {
-    return complain(error.what(), end_not_reached);
-  } catch (const std::domain_error& error) {  // what is asked for does not exist for the scene
-    return complain(error.what(), end_not_reached);
-  } catch (const std::range_error& error) {  // numbers of the scene overflow on the way to it
-    return complain(error.what(), end_not_reached);
-  } catch (const std::bad_alloc&) {
-    return complain(out_of_memory(), end_not_reached);
-  } catch (const std::system_error&) {  // no thread can be started
-    return complain(out_of_memory(), end_not_reached);
   } catch (const std::exception& error) {
-    return complain(error.what(), failed);
+    if (is_any_of<std::bad_alloc, std::system_error>(error))  // no thread can be started
+      return complain(out_of_memory(), end_not_reached);
+    return complain(error.what(), status_of(error));
   }
 }
 
@@ -309,19 +252,12 @@ void Program::parse(int argc, const char* const* argv) {
   for (const auto& check : checks_) check();
 }
 
-int Program::work_or_instead(const std::function<int()>& work) {
-  if (instead_ && instead_->option.is_given()) {
-    for (const auto& [option, values] : given()) {
-      if (option == instead_->option.name() || option == "--force" || option == "--progress")
-        continue;
-      throw InvalidInput(fmt::format("{} is not allowed with {}, which measures nothing", option,
-                                     instead_->option.name()));
-    }
-    instead_->act(instead_->option);
-    return done;
+void Program::require_alone(const std::string& option) const {
+  for (const auto& [other, values] : given()) {
+    if (other == option || other == "--force" || other == "--progress") continue;
+    throw InvalidInput(
+        fmt::format("{} is not allowed with {}, which measures nothing", other, option));
   }
-  if (!meaning_of_folder_.empty()) require_given(folder_, "--out", meaning_of_folder_);
-  return work();
 }
 
 int Program::complain(const std::string& sentence, int status) const {

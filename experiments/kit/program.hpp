@@ -3,7 +3,6 @@
 #include <concepts>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/columns.hpp"
+#include "experiments/kit/csv.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/scene_choice.hpp"
 #include "experiments/kit/study.hpp"
@@ -127,40 +126,54 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
+  using Text = const std::string&;
   // Options, with their texts in --help. A default that is given is shown there. A name without
   // dashes is a positional argument. Lists are written a,b,...
-  Argument<double> number(const std::string& name, const std::string& text);
-  Argument<double> number(const std::string& name, double value, const std::string& text);
-  Argument<int> whole(const std::string& name, const std::string& text);
-  Argument<int> whole(const std::string& name, int value, const std::string& text);
-  Argument<std::string> word(const std::string& name, const std::string& text);
-  Argument<std::string> word(const std::string& name, const std::string& value,
-                             const std::string& text);
-  Argument<std::vector<double>> numbers(const std::string& name, const std::string& text);
-  Argument<std::vector<double>> numbers(const std::string& name, std::vector<double> values,
-                                        const std::string& text);
-  Argument<std::vector<int>> wholes(const std::string& name, std::vector<int> values,
-                                    const std::string& text);
-  Argument<std::vector<std::string>> words(const std::string& name, const std::string& text);
-  Argument<std::vector<std::string>> words(const std::string& name, std::vector<std::string> values,
-                                           const std::string& text);
+  Argument<double> number(Text name, Text text) { return declare(name, 0., text, false); }
+  Argument<double> number(Text name, double value, Text text) {
+    return declare(name, value, text, true);
+  }
+  Argument<int> whole(Text name, Text text) { return declare(name, 0, text, false); }
+  Argument<int> whole(Text name, int value, Text text) { return declare(name, value, text, true); }
+  Argument<std::string> word(Text name, Text text) {
+    return declare(name, std::string(), text, false);
+  }
+  Argument<std::string> word(Text name, Text value, Text text) {
+    return declare(name, value, text, true);
+  }
+  Argument<std::vector<double>> numbers(Text name, Text text) {
+    return declare(name, std::vector<double>(), text, false);
+  }
+  Argument<std::vector<double>> numbers(Text name, std::vector<double> values, Text text) {
+    return declare(name, std::move(values), text, true);
+  }
+  Argument<std::vector<int>> wholes(Text name, std::vector<int> values, Text text) {
+    return declare(name, std::move(values), text, true);
+  }
+  Argument<std::vector<std::string>> words(Text name, Text text) {
+    return declare(name, std::vector<std::string>(), text, false);
+  }
+  Argument<std::vector<std::string>> words(Text name, std::vector<std::string> values, Text text) {
+    return declare(name, std::move(values), text, true);
+  }
   // An option whose value is kept elsewhere, a double, int, bool, std::string or a vector. Lists
   // are of several words here.
   template <class T>
-  Argument<T> bind(const std::string& name, T& value, const std::string& text,
-                   bool is_shown = false);
+  Argument<T> bind(Text name, T& value, Text text, bool is_shown = false);
   // A number that may be given several times.
-  Argument<std::vector<double>> repeated_number(const std::string& name, const std::string& text);
-  Argument<bool> flag(const std::string& name, const std::string& text);
+  Argument<std::vector<double>> repeated_number(Text name, Text text);
+  Argument<bool> flag(Text name, Text text) { return declare(name, false, text, false); }
 
   // Options that several programs share: --scene and --no-reduce; --until; --methods; --repeats and
-  // --point-limit; those of the methods (see method_options.hpp).
+  // --point-limit; those of the methods (see allowed_options.hpp).
   Argument<SceneChoice> scene();
   Argument<SceneChoice> drawn_scene();  // --scene alone
-  Argument<double> until(
-      const std::string& text = "the time to run to in s (default: the scene's own)");
-  Argument<std::vector<std::string>> methods(
-      const std::string& text = "a,b,...: the methods (default: all)");
+  Argument<double> until(Text text = "the time to run to in s (default: the scene's own)") {
+    return number("--until", text);
+  }
+  Argument<std::vector<std::string>> methods(Text text = "a,b,...: the methods (default: all)") {
+    return words("--methods", text);
+  }
   // --steps, step sizes [s].
   Argument<std::vector<double>> steps(std::vector<double> usual);
   Argument<Effort> effort(const Effort& usual = {});
@@ -176,10 +189,12 @@ class Program {
   // Another file in the folder, which appears together with the tables; see WholeFile for
   // `beginning`. Null until they can be written.
   std::unique_ptr<WholeFile>& file(const std::string& name, const std::string& beginning);
-  // An option that takes a word and replaces the work by act(word). No option but --force and
+  // An option that takes a word and asks for other work, without --out. No option but --force and
   // --progress may be given beside it.
-  void instead(const std::string& name, const std::string& text,
-               const std::function<void(const std::string&)>& act);
+  Argument<std::string> instead(Text name, Text text) {
+    instead_ = name;
+    return word(name, text);
+  }
 
   // Parses the command line, checks the values and runs `work`. SIGINT, SIGTERM and the time limit
   // interrupt it (see interruptible.hpp). Returns the exit status: that of `work`, or after one
@@ -242,15 +257,19 @@ class Program {
                 const std::function<void(Study&)>& measure,
                 const std::function<nlohmann::json(Study&)>& report);
   template <class T>
-  T& keep(T value);
+  T& keep(T value) {
+    const auto kept = std::make_shared<T>(std::move(value));
+    values_.push_back(kept);
+    return *kept;
+  }
   template <class T>
-  Argument<T> declare(const std::string& name, T value, const std::string& text, bool is_shown);
+  Argument<T> declare(Text name, T value, Text text, bool is_shown);
   CLI::Option* option(const std::string& name) const;
   void let_last_count(const std::string& name);
   void declare_threads();
   void declare_shares();
   StudyCall study_call() const;
-  int work_or_instead(const std::function<int()>& work);
+  void require_alone(const std::string& option) const;
   int complain(const std::string& sentence, int status) const;
   void open_tables();
 
@@ -264,12 +283,7 @@ class Program {
     std::unique_ptr<WholeFile> file{};
   };
   std::vector<std::unique_ptr<File>> files_;
-  struct Instead {
-    Argument<std::string> option;
-    std::function<void(const std::string&)> act;
-  };
-  std::optional<Instead> instead_;
-  std::string folder_, meaning_of_folder_;
+  std::string folder_, meaning_of_folder_, instead_;
   std::vector<std::string> command_line_;
 };
 

@@ -46,10 +46,10 @@ std::string date_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
-std::string code_hash() { return build_info::source_hash; }
-
 nlohmann::json build() {
-  return {{"code", code_hash()}, {"compiler", build_info::compiler}, {"flags", build_info::flags}};
+  return {{"code", build_info::source_hash},
+          {"compiler", build_info::compiler},
+          {"flags", build_info::flags}};
 }
 
 std::string_view roots() {

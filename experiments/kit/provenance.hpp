@@ -49,7 +49,4 @@ std::string host();
 // The present time by this machine's clock, as 2026-01-31T12:00:00Z (UTC).
 std::string date_now();
 
-// Hash of all sources that decide a motion; changes when the code does.
-std::string code_hash();
-
 }  // namespace qddot::inline kit

@@ -87,21 +87,10 @@ double number(const nlohmann::json& json, const char* name, double otherwise) {
   return found == json.end() || found->is_null() ? otherwise : found->get<double>();
 }
 
-// Infinity is null.
-double time_or_never(const nlohmann::json& json) {
-  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
-}
-
 nlohmann::json out_of_symmetry_to_json(const Reference& reference) {
   const auto& out = reference.out_of_symmetry;
   if (!out) return nullptr;
   return {{"rounding_effect", out->effect}, {"horizon", out->horizon}, {"lyapunov", out->lyapunov}};
-}
-
-std::optional<OutOfSymmetry> out_of_symmetry_from_json(const nlohmann::json& json) {
-  if (json.is_null()) return {};
-  return OutOfSymmetry{json.at("rounding_effect"), time_or_never(json.at("horizon")),
-                       json.at("lyapunov")};
 }
 
 std::string written(const nlohmann::json& json, int indent) {
@@ -180,9 +169,13 @@ nlohmann::json key_of(const Scene& drawn, const ReducedScene& scene, double unti
   nlohmann::json key = {{"scene_hash", content_hash(drawn)},
                         {"unknowns", scene.system().size()},
                         {"until", until},
-                        {"source_hash", code_hash()}};
+                        {"source_hash", build_info::source_hash}};
   if (needed) key["needed"] = *needed;
   return key;
+}
+
+bool is_of(const nlohmann::json& file, const nlohmann::json& key) {
+  return file.is_object() && file.value("key", nlohmann::json()) == key;
 }
 
 }  // namespace
@@ -216,21 +209,17 @@ nlohmann::json to_json(const Reference& r) {
 }
 
 Reference reference_from_json(const nlohmann::json& json) {
-  return {.end = {json.at("t"), vector(json.at("q")), vector(json.at("v"))},
-          .energy = json.at("energy"),
-          .scales = scales_from_json(json.at("scales")),
-          .certified = {json.at("certified_position"), json.at("certified_velocity"),
-                        json.at("certified_energy")},
-          .rounding_effect = json.at("rounding_effect"),
-          .perturbation_growth = json.at("perturbation_growth"),
-          .horizon = time_or_never(json.at("horizon")),
-          .lyapunov = json.at("lyapunov"),
-          .is_reduced_by_symmetry = json.at("reduced_by_symmetry"),
-          .out_of_symmetry = out_of_symmetry_from_json(json.at("out_of_symmetry")),
-          .modal_shares = vector(json.at("modal_shares")),
-          .modal_shares_floor = json.at("modal_shares_floor"),
-          .made_by = json.at("made_by"),
-          .seconds = json.at("seconds")};
+  Reference reference = reference_without_end(json);
+  reference.end = {json.at("t"), vector(json.at("q")), vector(json.at("v"))};
+  reference.energy = json.at("energy");
+  reference.scales = scales_from_json(json.at("scales"));
+  reference.certified = {json.at("certified_position"), json.at("certified_velocity"),
+                         json.at("certified_energy")};
+  reference.rounding_effect = json.at("rounding_effect");
+  reference.perturbation_growth = json.at("perturbation_growth");
+  reference.made_by = json.at("made_by");
+  reference.seconds = json.at("seconds");
+  return reference;
 }
 
 Reference reference_without_end(const nlohmann::json& json) {
@@ -292,12 +281,12 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   const std::string file = file_in(folder);
   const nlohmann::json key = key_of(drawn, scene, until, needed);
   const nlohmann::json found = read_json(file);
-  if (found.is_object() && found.value("key", nlohmann::json()) == key) {
+  const bool is_own = is_of(found, key);
+  if (is_own) {
     if (auto reference = stored(found, scene, until)) return *reference;
   }
-  const bool is_of_others = found.is_object() && found.value("key", nlohmann::json()) != key;
   WholeFile whole(file);
-  if (!found.is_null() && !is_of_others) {
+  if (is_own || !(found.is_null() || found.is_object())) {
     progress().wipe();
     fmt::print(stderr,
                "{}: the file was changed or is damaged (its checksum or its numbers are wrong): "
@@ -318,20 +307,15 @@ Reference reference_for(const Scene& drawn, const Scene& start, const ReducedSce
   return reference;
 }
 
-Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double until,
-                         const std::string& folder) {
+Reference kept_reference(const Subject& subject, const std::string& folder) {
+  const auto& [source, drawn, start, scene, until] = subject;
   const nlohmann::json found = read_json(file_in(folder));
-  if (found.is_object() &&
-      found.value("key", nlohmann::json()) == key_of(drawn, scene, until, std::nullopt)) {
+  if (is_of(found, key_of(drawn, scene, until, std::nullopt))) {
     if (auto reference = stored(found, scene, until)) return *reference;
   }
   throw InvalidInput(fmt::format(
       "{}: it is missing or not the reference of this scene to {} s; the share {} makes it",
       file_in(folder), until, reference_share));
-}
-
-Reference kept_reference(const Subject& subject, const std::string& folder) {
-  return kept_reference(subject.drawn, subject.reduced, subject.until, folder);
 }
 
 }  // namespace qddot::inline kit

@@ -39,8 +39,6 @@ Reference reference_for(const Subject& subject, const std::string& folder,
                         const nlohmann::json& origin);
 
 // The reference that reference_for would read. Throws InvalidInput if there is none.
-Reference kept_reference(const Scene& drawn, const ReducedScene& scene, double until,
-                         const std::string& folder);
 Reference kept_reference(const Subject& subject, const std::string& folder);
 
 }  // namespace qddot::inline kit

@@ -1,7 +1,6 @@
 #include "experiments/kit/scene_choice.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -9,10 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/memory.hpp"
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
@@ -22,11 +20,7 @@ namespace qddot::inline kit {
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
-  return load(choice.name);
-}
-
-Scene load(const std::string& name) {
-  Scene scene = load_scene(name,
+  Scene scene = load_scene(choice.name,
                            [](const std::string& path) {
                              protect_input(path);
                              return read_text(path);
@@ -174,6 +168,18 @@ std::vector<const Method*> fixed_step_among(const std::vector<std::string>& list
                method->name);
   }
   return selected;
+}
+
+std::string method_names() {
+  return names_where([](const Method&) { return true; });
+}
+
+std::string names_where(const std::function<bool(const Method&)>& has) {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) {
+    if (has(method)) names.push_back(method.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::vector<std::string> names_of(const std::vector<const Method*>& methods) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,6 @@ struct SceneChoice {
 
 // Loads the scene of that name, a generator's or a file's, and prints its warnings to stderr.
 // Throws InvalidInput if there is none or it is wrong.
-Scene load(const std::string& name);
 Scene load(const SceneChoice& choice);
 
 // The scene as its motion starts: at its equilibrium, if the scene says so. Throws InvalidInput if
@@ -72,6 +72,10 @@ std::vector<const Method*> select_fixed_step(const std::vector<std::string>& lis
 // Throws InvalidInput if none is left.
 std::vector<const Method*> fixed_step_among(const std::vector<std::string>& list,
                                             const Subject& subject);
+
+// The names of all methods, as "a, b, c", or of those that have the given property.
+std::string method_names();
+std::string names_where(const std::function<bool(const Method&)>& has);
 
 // The methods' names.
 std::vector<std::string> names_of(const std::vector<const Method*>& methods);

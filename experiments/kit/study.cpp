@@ -5,8 +5,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <omp.h>
 #include <set>
 
 #include <fmt/format.h>
@@ -16,7 +14,6 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -251,11 +248,6 @@ int Study::conclude_whole(int status) {
   return status;
 }
 
-int Study::finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status) {
-  for (CsvFile* table : tables) complete(*table, origin, status);
-  return conclude(status);
-}
-
 void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work, int threads) {
   std::exception_ptr trouble, interruption;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
@@ -272,10 +264,6 @@ void side_by_side(std::size_t count, const std::function<void(std::size_t)>& wor
   }
   if (trouble) std::rethrow_exception(trouble);
   if (interruption) std::rethrow_exception(interruption);
-}
-
-void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work) {
-  side_by_side(count, work, omp_get_max_threads());
 }
 
 }  // namespace qddot::inline kit

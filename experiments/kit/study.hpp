@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <omp.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -103,8 +104,6 @@ class Study {
   // Gives all tables and files their names. Returns `status`, or that of the interruption after a
   // message on how to go on.
   int conclude(int status);
-  // Both, for tables of one origin.
-  int finish(const std::vector<CsvFile*>& tables, const nlohmann::json& origin, int status);
 
  private:
   void list(const Shares& shares);
@@ -128,7 +127,7 @@ class Study {
 
 // Calls work(i) for each i below `count` on so many threads (OpenMP). Throws, when all threads have
 // ended, what one of the calls threw; Interrupted only if nothing else was.
-void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work, int threads);
-void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work);  // on all cores
+void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work,
+                  int threads = omp_get_max_threads());
 
 }  // namespace qddot::inline kit

@@ -7,14 +7,32 @@
 
 namespace qddot::inline kit {
 
+// The files that outputs may replace. A file that the program has read is never replaced, and a
+// file that qddot did not write only with --force.
+
+// Protects a file that was read: no output may replace it from now on.
+void protect_input(const std::string& path);
+// Allows outputs to replace files that qddot did not write.
+void allow_replacing();
+
+// Throws InvalidInput, which names the path, if an output may not replace that file. Replaceable
+// are empty files, files that begin with `beginning` (a table's own header row), and files that
+// qddot wrote as their sidecar `sidecar` or their own text says.
+void require_replaceable(const std::string& path, const std::string& beginning = {},
+                         const std::string& sidecar = {});
+
+// The text after a line, a comment in TOML, by which qddot recognises it as its own while nobody
+// changes it.
+std::string signed_text(const std::string& text);
+
 // Thrown if a result cannot be written, as on a full disk; names the file and the reason.
 class CannotWrite : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// A file that appears whole or not at all. It is written under another name in the same folder (see
-// unfinished.hpp) and renamed by commit(), or removed if it is destroyed before.
+// A file that appears whole or not at all. It is written under another name in the same folder,
+// X.PID.part, and renamed by commit(), or removed if it is destroyed before.
 class WholeFile {
  public:
   // Throws InvalidInput if the file cannot be written, or may not be replaced (see
@@ -44,6 +62,9 @@ class WholeFile {
   std::FILE* file_;  // null once it is complete
   int lock_ = -1;    // held until the file has its name, so that it is not taken for stale
 };
+
+// Removes all files of this process that have not appeared, before it ends.
+void remove_unfinished();
 
 // The 64-bit FNV-1a hash of a text, as 16 hexadecimal digits.
 std::string text_hash(const std::string& text);

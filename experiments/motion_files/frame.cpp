@@ -1,13 +1,11 @@
 #include "experiments/motion_files/frame.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#include "experiments/motion_files/cells.hpp"
 #include "experiments/motion_files/on_all_cores.hpp"
 
 namespace qddot::motion_files {
@@ -61,7 +59,38 @@ constexpr std::size_t slab = 1 << 15;
 
 std::size_t slabs(std::size_t items) { return (items + slab - 1) / slab; }
 
+// The lengths [m] of the scene's springs that define their strains, (l - length) / length. A length
+// is the rest length or, if that is zero, the distance of the nodes at the start of the motion,
+// `nodes`; zero if both are.
+std::vector<double> strain_lengths(const Scene& scene, const std::vector<Node>& nodes) {
+  std::vector<double> lengths;
+  lengths.reserve(scene.springs.size());
+  for (const auto& [ends, law, holds, stiff] : scene.springs) {
+    const auto& from = nodes[ends[0]].position;
+    const auto& to = nodes[ends[1]].position;
+    lengths.push_back(law.rest_length > 0 ? law.rest_length : (to - from).norm());
+  }
+  return lengths;
+}
+
 }  // namespace
+
+Cells cells_of(const Scene& scene) {
+  Cells cells;
+  std::vector<bool> is_joined(scene.nodes.size(), false);
+  for (const Spring& spring : scene.springs) {
+    cells.lines.push_back(spring.nodes);
+    for (const std::size_t node : spring.nodes) is_joined[node] = true;
+  }
+  cells.triangles = scene.faces;
+  for (const auto& face : scene.faces) {
+    for (const std::size_t node : face) is_joined[node] = true;
+  }
+  for (std::size_t i = 0; i < is_joined.size(); ++i) {
+    if (!is_joined[i]) cells.points.push_back(i);
+  }
+  return cells;
+}
 
 Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted)
     : scene_(scene),
@@ -76,6 +105,7 @@ Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wa
 }
 
 const Frame* Framing::of(const State& state, const State* reference) {
+  if (has_ended_) return nullptr;
   scene_.expand(state, nodes_);
   if (reference) scene_.expand(*reference, exact_nodes_);
   frame_.time = state.t;
@@ -92,7 +122,8 @@ const Frame* Framing::of(const State& state, const State* reference) {
     overflows |= is_of_nodes ? take_nodes(first, std::min(nodes, first + slab))
                              : take_strains(first, std::min(springs, first + slab));
   });
-  return std::isfinite(state.t) && overflows >> 31 == 0 ? &frame_ : nullptr;
+  has_ended_ = !std::isfinite(state.t) || overflows >> 31 != 0;
+  return has_ended_ ? nullptr : &frame_;
 }
 
 std::uint32_t Framing::take_nodes(std::size_t first, std::size_t end) {

@@ -1,11 +1,25 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "experiments/motion_files/motion_file.hpp"
+#include "qddot/scene/scene.hpp"
 
 namespace qddot::motion_files {
+
+// The cells of a picture, numbered in this order: a point for each node on no spring and no face, a
+// line for each spring, a triangle for each face.
+struct Cells {
+  std::vector<std::size_t> points;
+  std::vector<std::array<std::size_t, 2>> lines;
+  std::vector<std::array<std::size_t, 3>> triangles;
+
+  std::size_t count() const { return points.size() + lines.size() + triangles.size(); }
+};
+
+Cells cells_of(const Scene& scene);
 
 // The number of bits after the first one that a field keeps: a rounding of 2^-8, the step of a
 // colour scale of 256 shades. The zeros after them make files small.
@@ -29,7 +43,7 @@ class Framing {
   Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted);
 
   // The frame of the state, with distances if there is a reference; the next call overwrites it.
-  // nullptr if a number is not finite or beyond 32-bit floats.
+  // nullptr if a number is not finite or beyond 32-bit floats, and from then on.
   const Frame* of(const State& state, const State* reference);
   const Fields& wanted() const { return wanted_; }
   // All nodes of the last frame.
@@ -49,6 +63,18 @@ class Framing {
   std::vector<double> lengths_;
   std::size_t first_line_, cells_;
   Frame frame_;
+  bool has_ended_ = false;
 };
+
+// The formats of motions (see open_motion). `framing` has framed the start.
+
+// A motion as a point cache of version 1, with positions alone. An .obj beside it has the nodes at
+// the start, the faces and all springs.
+std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start, Framing framing);
+
+// A motion in the VTKHDF 2.0 layout of PolyData over time, and an .xdmf beside it. HDF5 is not made
+// for several threads: one at a time may work on files of this kind.
+std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& start,
+                                        Framing framing, bool has_reference);
 
 }  // namespace qddot::motion_files

@@ -1,10 +1,6 @@
 #include "experiments/motion_files/hdf5.hpp"
 
-#include <algorithm>
 #include <cstdint>
-#include <span>
-
-#include "experiments/motion_files/deflate.hpp"
 
 namespace qddot::motion_files::hdf5 {
 namespace {
@@ -31,36 +27,19 @@ std::string reason() {
 constexpr std::size_t chunk_rows = 1 << 14;
 
 template <class Value>
-void write_chunks(const Handle& set, const std::vector<Value>& values, std::size_t columns) {
-  const std::size_t in_chunk = chunk_rows * columns;
-  for (std::size_t first = 0; first < values.size(); first += in_chunk) {
-    const std::span some =
-        std::span(values).subspan(first, std::min(in_chunk, values.size() - first));
-    Bytes bytes(sizeof(Value) * in_chunk);
-    shuffle<Value>(some, bytes.data(), in_chunk);
-    const Bytes packed = deflated(bytes);
-    const hsize_t place[] = {first / columns, 0};
-    checked(H5Dwrite_chunk(set.id(), H5P_DEFAULT, 0, place, packed.size(), packed.data()));
-  }
-}
-
-template <class Value>
 void write_all(const Handle& parent, const std::string& name, hid_t type,
                const std::vector<Value>& values, std::size_t columns) {
   std::vector<hsize_t> size = {values.size() / columns};
   if (columns > 1) size.push_back(columns);
   const Handle space = new_space(size), properties = new_properties(H5P_DATASET_CREATE);
-  const bool is_packed = size[0] > chunk_rows;
-  if (is_packed) {
+  if (size[0] > chunk_rows) {
     std::vector<hsize_t> chunk = size;
     chunk[0] = chunk_rows;
     checked(H5Pset_chunk(properties.id(), static_cast<int>(chunk.size()), chunk.data()));
     pass_filters(properties);
   }
   const Handle set = new_dataset(parent, name, type, space, properties);
-  if (is_packed)
-    write_chunks(set, values, columns);
-  else if (!values.empty())
+  if (!values.empty())
     checked(H5Dwrite(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
 }
 
@@ -86,7 +65,7 @@ void be_quiet() {
 Handle new_file(const std::string& path) {
   const Handle access = new_properties(H5P_FILE_ACCESS);
   checked(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110));
-  // The file is already locked (see unfinished.hpp), and HDF5's own lock would conflict.
+  // The file is already locked (see WholeFile), and HDF5's own lock would conflict.
   checked(H5Pset_file_locking(access.id(), false, true));
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose};
 }

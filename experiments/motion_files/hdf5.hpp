@@ -1,7 +1,6 @@
 #pragma once
 
 #include <hdf5.h>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -60,8 +59,7 @@ Handle new_space(const std::vector<hsize_t>& size, bool may_grow = false);
 Handle new_dataset(const Handle& parent, const std::string& name, hid_t type, const Handle& space,
                    const Handle& properties);
 
-// Makes datasets with these properties shuffle their chunks and then deflate them (see
-// deflate.hpp).
+// Makes datasets with these properties shuffle their chunks and then deflate them.
 void pass_filters(const Handle& properties);
 
 // Writes a dataset of whole numbers or of times, all at once.

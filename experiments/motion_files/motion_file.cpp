@@ -7,7 +7,6 @@
 
 #include "experiments/kit/csv.hpp"
 #include "experiments/motion_files/frame.hpp"
-#include "experiments/motion_files/motion_formats.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion_files {

@@ -1,6 +1,5 @@
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -9,10 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "experiments/motion_files/frame.hpp"
-#include "experiments/motion_files/motion_formats.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion_files {
@@ -65,12 +62,8 @@ class Pc2File final : public MotionFile {
   }
 
   bool add(const State& state, const State*) override {
-    const Frame* frame =
-        has_ended_ || frames_ == most_points ? nullptr : framing_.of(state, nullptr);
-    if (!frame) {
-      has_ended_ = true;
-      return false;
-    }
+    const Frame* frame = frames_ == most_points ? nullptr : framing_.of(state, nullptr);
+    if (!frame) return false;
     file_.write({reinterpret_cast<const char*>(frame->positions.data()),
                  sizeof(float) * frame->positions.size()});
     ++frames_;
@@ -90,7 +83,6 @@ class Pc2File final : public MotionFile {
  private:
   Framing framing_;
   std::size_t points_, frames_ = 0;
-  bool has_ended_ = false;
   WholeFile file_, obj_, sidecar_;
 };
 

@@ -1,22 +1,119 @@
-#include <array>
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/whole_file.hpp"
-#include "experiments/motion_files/cells.hpp"
 #include "experiments/motion_files/frame.hpp"
 #include "experiments/motion_files/hdf5.hpp"
-#include "experiments/motion_files/motion_formats.hpp"
 #include "experiments/motion_files/row_stream.hpp"
-#include "experiments/motion_files/xdmf.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::motion_files {
 namespace {
+
+// The names that an .xdmf uses for the file beside it and its datasets: /Frames/cells and, for each
+// frame, /Frames/NUMBER/NAME with Points and the fields.
+struct XdmfFields {
+  struct Field {
+    std::string name;
+    std::size_t rows, columns;
+    bool is_of_cells;
+  };
+  std::string file;  // without its folder
+  std::size_t nodes, cells, cell_numbers;
+  std::vector<Field> fields;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string item(const std::string& dimensions, const char* type, int bytes,
+                 const std::string& place) {
+  return fmt::format(
+      R"(<DataItem Format="HDF" Dimensions="{}" NumberType="{}" Precision="{}">{}</DataItem>)",
+      dimensions, type, bytes, place);
+}
+
+// The first lines of every .xdmf file.
+const std::string xdmf_beginning = "<?xml version=\"1.0\"?>\n<!-- Written by qddot -->\n";
+
+// The name of a frame's group.
+std::string frame_name(std::size_t frame) { return fmt::format("{:06}", frame); }
+
+// The text of an XDMF 3 file of frames at these times [s]. Geometry and each field are one whole
+// dataset; ParaView 5.11's own reader would show a part of a dataset as empty.
+std::string xdmf_text(const XdmfFields& about, const std::vector<double>& times) {
+  const std::string frames = escaped(about.file) + ":/Frames/";
+  fmt::memory_buffer text;
+  const auto add = [&](const char* format, const auto&... values) {
+    fmt::format_to(std::back_inserter(text), fmt::runtime(format), values...);
+  };
+  add("{}", xdmf_beginning);
+  add("<Xdmf Version=\"3.0\">\n<Domain>\n"
+      "<Grid Name=\"motion\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const std::string here = frames + frame_name(k) + "/";
+    const std::string points = item(fmt::format("{} 3", about.nodes), "Float", 4, here + "Points");
+    add("<Grid Name=\"frame\" GridType=\"Uniform\">\n<Time Value=\"{}\"/>\n", times[k]);
+    add("<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">{}</Topology>\n", about.cells,
+        item(fmt::format("{}", about.cell_numbers), "Int", 8, frames + "cells"));
+    add("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", points);
+    // Readers that use one geometry for all frames need it.
+    add("<Attribute Name=\"position\" AttributeType=\"Vector\" Center=\"Node\">{}</Attribute>\n",
+        points);
+    for (const auto& field : about.fields) {
+      const bool is_vector = field.columns == 3;
+      add("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", field.name,
+          is_vector ? "Vector" : "Scalar", field.is_of_cells ? "Cell" : "Node",
+          item(fmt::format("{}{}", field.rows, is_vector ? " 3" : ""), "Float", 4,
+               here + field.name));
+    }
+    add("</Grid>\n");
+  }
+  add("</Grid>\n</Domain>\n</Xdmf>\n");
+  return fmt::to_string(text);
+}
+
+// Whether XML and XDMF can name that file: UTF-8 without control characters and colons.
+bool can_be_named(const std::string& file) {
+  // Some readers take blanks away from both ends.
+  if (file.starts_with(' ') || file.ends_with(' ')) return false;
+  if (std::ranges::any_of(file, [](char c) {
+        return static_cast<unsigned char>(c) < ' ' || c == '\x7f' || c == ':';
+      }))
+    return false;
+  try {
+    static_cast<void>(nlohmann::json(file).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {  // not UTF-8
+    return false;
+  }
+}
 
 using hdf5::Handle;
 using kit::CannotWrite;
@@ -86,12 +183,8 @@ class VtkhdfFile final : public MotionFile {
   }
 
   bool add(const State& state, const State* reference) override {
-    const Frame* frame =
-        has_ended_ ? nullptr : framing_.of(state, has_reference_ ? reference : nullptr);
-    if (!frame) {
-      has_ended_ = true;
-      return false;
-    }
+    const Frame* frame = framing_.of(state, has_reference_ ? reference : nullptr);
+    if (!frame) return false;
     trying([&] {
       std::vector<std::pair<RowStream*, const std::vector<float>*>> rows;
       for (Stream& stream : streams_) rows.emplace_back(&stream.out, &(frame->*stream.numbers));
@@ -208,7 +301,7 @@ class VtkhdfFile final : public MotionFile {
 
   Framing framing_;
   WholeFile file_, xdmf_, sidecar_;
-  bool has_reference_, has_ended_ = false;
+  bool has_reference_;
   Handle hdf5_, root_, frames_, fields_of_nodes_, fields_of_cells_;
   std::vector<Stream> streams_;  // closed before the file, as it is declared after it
   std::vector<double> times_;    // [s]

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -70,11 +69,5 @@ class KeptMotions {
   std::size_t runs_ = 0;
   double bytes_ = 0;
 };
-
-// The times [s] of the frames of a motion: 0 and the ends of `frames` equal parts of the time.
-std::vector<double> frame_times(double until, int frames);
-// The number of frames after the start that a motion of so many nodes has unless more are asked
-// for.
-int usual_number_of_frames(std::size_t nodes);
 
 }  // namespace qddot::motions

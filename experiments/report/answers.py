@@ -14,15 +14,6 @@ ON_LIMITS = (
 )
 
 
-def shown_rows(study):
-    """The rows of the record that the page shows: all that the study was asked for, else the usual
-    ones."""
-    rows = study.record.rows
-    if look(study.sidecar, "study", "options", "--accuracies"):
-        return rows
-    return [row for row in rows if any(math.isclose(row["accuracy"], usual) for usual in USUAL)]
-
-
 def answer(row):
     """The answer of one row of the record, as the page's data has it."""
     following = {"point": row["runner_up"], "ratio": row["ratio"]}
@@ -40,7 +31,10 @@ def answer(row):
 
 def answers(study):
     """The answers at the accuracies that the study was asked for, or else at 1e-2, ... 1e-8."""
-    return [answer(row) for row in shown_rows(study)]
+    rows = study.record.rows
+    if not look(study.sidecar, "study", "options", "--accuracies"):
+        rows = [row for row in rows if any(math.isclose(row["accuracy"], one) for one in USUAL)]
+    return [answer(row) for row in rows]
 
 
 def answers_note(found):

@@ -5,12 +5,14 @@ import math
 import shlex
 
 from style import number, seconds
-from study_folder import is_number, look, number_or_none
+from study_folder import look
+
+STIFFNESS = {True: "constant", False: "changes with the motion"}
 
 
 def in_words(value, unit=""):
-    """A number with its unit, or None where it is none."""
-    return f"{number(value)} {unit}".strip() if is_number(value) else None
+    """A number with its unit; None where it is not known."""
+    return None if value is None else f"{number(value)} {unit}".strip()
 
 
 def labelled(*pairs):
@@ -18,27 +20,15 @@ def labelled(*pairs):
     return [[label, str(words)] for label, words in pairs if words not in (None, "")]
 
 
-def findings(reduced):
-    """Each reduction's name and what it does."""
-    listed = look(reduced, "reductions")
-    return [
-        {"name": entry["name"], "what": entry["what"]}
-        for entry in (listed if isinstance(listed, list) else [])
-        if isinstance(look(entry, "name"), str) and isinstance(look(entry, "what"), str)
-    ]
-
-
 def left_out_part(sidecar):
     """The page's `left_out`; None where the study says nothing of it."""
     reduced = sidecar.get("reduced")
     if not isinstance(reduced, dict):
         return None
-    constant = reduced.get("stiffness_is_constant")
-    unstable = reduced.get("unstable_directions")
     return {
-        "unknowns_drawn": number_or_none(reduced.get("unknowns_drawn")),
-        "unknowns": number_or_none(reduced.get("unknowns")),
-        "findings": findings(reduced),
+        "unknowns_drawn": reduced.get("unknowns_drawn"),
+        "unknowns": reduced.get("unknowns"),
+        "findings": reduced.get("reductions") or [],
         "facts": labelled(
             ("largest frequency at the start", in_words(reduced.get("omega_max"), "1/s")),
             (
@@ -46,11 +36,8 @@ def left_out_part(sidecar):
                 in_words(reduced.get("largest_stable_step"), "s"),
             ),
             ("parts that no spring joins", reduced.get("parts")),
-            (
-                "stiffness matrix",
-                {True: "constant", False: "changes with the motion"}.get(constant),
-            ),
-            ("unstable directions at the start", unstable if is_number(unstable) else None),
+            ("stiffness matrix", STIFFNESS.get(reduced.get("stiffness_is_constant"))),
+            ("unstable directions at the start", reduced.get("unstable_directions")),
         ),
     }
 
@@ -76,35 +63,23 @@ def reference_part(study):
         ("largest displacement", in_words(look(file, "scales", "displacement"), "m")),
         ("largest speed", in_words(look(file, "scales", "speed"), "m/s")),
         ("largest kinetic energy", in_words(look(file, "scales", "kinetic"), "J")),
-        ("made in", seconds(file["seconds"]) if is_number(file.get("seconds")) else None),
+        ("made in", None if file.get("seconds") is None else seconds(file["seconds"])),
     )
-
-
-def libraries(sidecar):
-    """The libraries with their versions, in one line."""
-    versions = sidecar.get("libraries")
-    pairs = versions.items() if isinstance(versions, dict) else ()
-    return ", ".join(f"{name} {version}" for name, version in pairs)
-
-
-def measured_by(sidecar):
-    """The command line of the study, quoted for a shell."""
-    words = sidecar.get("command_line")
-    return shlex.join(map(str, words)) if isinstance(words, list) else None
 
 
 def provenance_part(sidecar):
     """The page's `provenance`."""
+    libraries = sidecar.get("libraries") or {}
     return labelled(
         ("processor", sidecar.get("cpu")),
         ("vector kernels", sidecar.get("kernels")),
         ("compiler", sidecar.get("compiler")),
         ("compiler flags", sidecar.get("flags")),
-        ("libraries", libraries(sidecar)),
+        ("libraries", ", ".join(map(" ".join, libraries.items()))),
         ("qddot", sidecar.get("version")),
         ("sources", sidecar.get("source_hash")),
         ("measured", sidecar.get("date")),
-        ("measured by", measured_by(sidecar)),
+        ("measured by", shlex.join(sidecar.get("command_line") or [])),
         ("scene's nodes", look(sidecar, "scene", "nodes")),
         ("scene's springs", look(sidecar, "scene", "springs")),
         ("scene's dimension", look(sidecar, "scene", "dimension")),

@@ -1,6 +1,7 @@
 """Which runs and frames of a motion a page has room for."""
 
 import bisect
+import functools
 
 import numpy as np
 
@@ -37,13 +38,10 @@ def fit(counts, room, encode):
     `size` in bytes of the frames of these numbers.
     """
     longest = max(counts)
-    made = {}
 
+    @functools.cache
     def encoded(run, limit):
-        frames = tuple(kept_frames(counts[run], longest, limit))
-        if (run, frames) not in made:
-            made[run, frames] = encode(run, frames)
-        return made[run, frames]
+        return encode(run, tuple(kept_frames(counts[run], longest, limit)))
 
     def size_of(runs, limit):
         return sum(encoded(run, limit).size for run in range(runs))

@@ -1,6 +1,7 @@
 """The command lines that repeat a page and its runs, quoted for a shell."""
 
 import shlex
+from itertools import pairwise
 
 from study_folder import look
 
@@ -22,10 +23,7 @@ GIVEN_BY_RUN = {"--point-limit": "0.5"}
 
 def scene_argument(sidecar):
     """What the study's command line says for --scene; None where that is not known."""
-    words = sidecar.get("command_line")
-    if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
-        return None
-    for word, following in zip(words, [*words[1:], None]):
+    for word, following in pairwise([*(sidecar.get("command_line") or []), None]):
         if word == "--scene":
             return following
         if word.startswith("--scene="):
@@ -36,11 +34,8 @@ def scene_argument(sidecar):
 def study_options(sidecar):
     """The options that decided what the study measured, {name: value}; a list is joined by commas,
     of other options the last value counts, a flag has None."""
-    options = look(sidecar, "study", "options")
     found = {}
-    for name, values in options.items() if isinstance(options, dict) else ():
-        if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
-            continue
+    for name, values in (look(sidecar, "study", "options") or {}).items():
         if name in FLAGS:
             found[name] = None
         elif values:
@@ -78,7 +73,7 @@ class RunCommands:
         self.scene = scene_argument(study.sidecar)
         self.until = study.record.until
         self.options = study_options(study.sidecar)
-        self.takes = {name: note.get("takes") for name, note in study.method_notes.items()}
+        self.takes = {name: look(note, "takes") for name, note in study.method_notes.items()}
 
     def of_run(self, method, knob, value):
         """The line that repeats a run of a method at a value of its knob; None where what the run

@@ -5,13 +5,17 @@ from style import STOCK
 from study_folder import look
 
 
-def family_entry(name, family):
-    """One entry of the page's `families`; `dash`: dashes and gaps in pixels, none for a solid line."""
-    lengths = () if isinstance(family.line, str) else family.line[1]
+def dash(family):
+    """The dashes and gaps of a family's line in pixels; none for a solid one."""
+    line = family.line
+    return [] if isinstance(line, str) else [family.width * length for length in line[1]]
+
+
+def family_entry(family):
+    """One entry of the page's `families`."""
     return {
-        "name": name,
         "title": family.title,
-        "dash": [family.width * length for length in lengths],
+        "dash": dash(family),
         "filled": family.filled,
         "width": family.width,
     }
@@ -23,22 +27,18 @@ def methods_part(study):
     strong = strong_methods(study.record.judged)
     looks = looks_by_prominence(known, strong)
     notes = study.method_notes
-    orders = {row["method"]: row.get("order") for _, row in study.rows}
     families, methods = {}, []
     for method, (family, stock_of) in known.items():
         drawn = looks[method].family
         name = "stock" if drawn is STOCK else family
-        families.setdefault(name, family_entry(name, drawn))
-        order = orders[method] or ""
+        families.setdefault(name, family_entry(drawn))
         methods.append(
             {
                 "name": method,
                 "family": list(families).index(name),
-                "order": int(order) if order.isdecimal() and int(order) else None,
                 "color": looks[method].color,
                 "text_color": looks[method].text_color,
                 "marker": looks[method].marker,
-                "stock_of": stock_of or None,
                 "strong": method in strong,
                 "line": look(notes.get(method), "summary"),
             }

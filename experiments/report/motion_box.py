@@ -1,7 +1,6 @@
 """The cube that the positions of a page's motions are told in, and the nodes that never move."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,14 +10,6 @@ from measurements import BadInput
 MARGIN = 0.25
 # How far a motion that may have diverged is believed, as a multiple of the first frame's extent.
 BELIEVED = 10
-
-
-@dataclass(frozen=True)
-class Box:
-    """The cube that positions are told in: its lower corner [m] and its side [m]."""
-
-    low: np.ndarray
-    size: float
 
 
 def bounds(motion, reach=math.inf):
@@ -47,8 +38,9 @@ def reach_of(motion):
 
 
 def box_of(motions, first_is_reference):
-    """The box of the first motion, widened for the others by no more than MARGIN to each side. A
-    first motion that is no reference's may have diverged: frames far off its start do not count."""
+    """The lower corner [m] and the side [m] of the first motion's cube, widened for the others by
+    no more than MARGIN to each side. A first motion that is no reference's may have diverged:
+    frames far off its start do not count."""
     low, high = bounds(motions[0], math.inf if first_is_reference else reach_of(motions[0]))
     if not np.isfinite(low + high).all():
         raise BadInput("the first motion has no positions")
@@ -58,7 +50,7 @@ def box_of(motions, first_is_reference):
         own_low, own_high = bounds(motion)
         low = np.minimum(low, np.clip(own_low, least, low))
         high = np.maximum(high, np.clip(own_high, high, most))
-    return Box(low, float((high - low).max()) or 1.0)
+    return low, float((high - low).max()) or 1.0
 
 
 def unmoved(motion):

@@ -1,68 +1,35 @@
 """Motions that a study kept: the rows of motions.csv, the files that they name and the energies."""
 
-import math
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import h5py
 import numpy as np
 
-from measurements import BadInput, parse, read_rows
+from measurements import BadInput, read_rows
+from study_folder import cell
 
-PHASES = ("all", "force", "stiffness", "factorization", "solve")
+# The columns of the seconds that a run spends in each phase.
+PHASES = {"all": "seconds"}
+PHASES |= {name: f"seconds_{name}" for name in ("force", "stiffness", "factorization", "solve")}
 # Bytes of unpacked chunks: frames are read one by one, and a chunk may hold many.
 CACHE = 1 << 26
 # The columns of the energies and their significant digits in a page: of the total its small changes are shown.
 ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}
 
 
-@dataclass(frozen=True)
-class MotionRow:
-    """One row of motions.csv; seconds: of the run by phase, or None."""
-
-    file: str
-    role: str
-    method: str
-    knob: str
-    value: float
-    outcome: str
-    t_reached: float
-    why: str
-    seconds: dict | None = None
-
-
 def read_motion_rows(directory):
-    """The rows of motions.csv, the most telling first. Raises BadInput where it is broken."""
+    """The rows of motions.csv by column, the most telling first; `seconds`: of the run by phase, or
+    None. Raises BadInput where it is broken."""
     path = os.path.join(directory, "motions.csv")
     texts = ("file", "role", "method", "knob", "outcome", "why")
     rows = []
     for line, row in read_rows(path, (*texts, "value", "t_reached")):
-        numbers = {name: parse(path, line, row, name, False) for name in ("value", "t_reached")}
-        rows.append(
-            MotionRow(
-                **{name: row[name] or "" for name in texts},
-                **numbers,
-                seconds=seconds_of(path, line, row),
-            )
-        )
+        rows.append({name: row[name] or "" for name in texts})
+        rows[-1] |= {name: cell(path, line, row, name) for name in ("value", "t_reached")}
+        phases = {name: cell(path, line, row, column) for name, column in PHASES.items()}
+        rows[-1]["seconds"] = phases if set(phases.values()) != {None} else None
     return rows
-
-
-def seconds_of(path, line, row):
-    """The seconds of a row by phase, None where they are not known; None without any."""
-    columns = {"all": "seconds"} | {phase: f"seconds_{phase}" for phase in PHASES[1:]}
-    seconds = {
-        phase: parse(path, line, row, column, False) if column in row else math.nan
-        for phase, column in columns.items()
-    }
-    if not any(map(math.isfinite, seconds.values())):
-        return None
-    return {phase: value if math.isfinite(value) else None for phase, value in seconds.items()}
-
-
-def to_digits(value, digits):
-    """The number, rounded to this many significant digits; None for what is no number."""
-    return float(f"{value:.{digits}g}") if math.isfinite(value) else None
 
 
 def read_energies(directory):
@@ -75,9 +42,9 @@ def read_energies(directory):
     energies = {}
     for line, row in read_rows(path, ("file", *ENERGIES)):
         own = energies.setdefault(row["file"], {name: [] for name in ENERGIES})
-        for name in ENERGIES:
-            value = parse(path, line, row, name, False)
-            own[name].append(to_digits(value, ENERGIES[name]))
+        for name, digits in ENERGIES.items():
+            value = cell(path, line, row, name)
+            own[name].append(None if value is None else float(f"{value:.{digits}g}"))
     return energies
 
 
@@ -90,8 +57,8 @@ class MotionFile:
     file: h5py.File
     times: np.ndarray
     nodes: int
-    springs: np.ndarray = field(repr=False)
-    faces: np.ndarray = field(repr=False)
+    springs: np.ndarray
+    faces: np.ndarray
 
     def positions(self, frames):
         """Positions (frames, nodes, 3) [m] of the frames of these numbers."""

@@ -1,7 +1,6 @@
 """The motions of a page: what of the files in motions/ it holds, in how many bytes."""
 
 import json
-import math
 import os
 from dataclasses import dataclass
 
@@ -11,7 +10,7 @@ from encoding import distances_blob, index_blob, positions_blob, quantised
 from measurements import BadInput
 from motion_box import box_of, unmoved
 from motion_files import open_motion, read_energies, read_motion_rows
-from study_folder import is_number, look, number_or_none, read_json
+from study_folder import look, read_json
 
 # Which runs are made, how often and for how long they may go on: another study has the same runs.
 OF_THE_STUDY_ALONE = ("--methods", "--repeats", "--point-limit")
@@ -21,29 +20,16 @@ FRAME_OF_BLOB = len('<script type="text/plain" id="p1000"></script>\n')
 
 @dataclass(frozen=True)
 class EncodedRun:
-    """One run as the page has it: its entry in `runs` without the names of its blobs."""
+    """One run as the page has it: its entry in `runs` and its blobs by their names."""
 
     entry: dict
-    positions: str
-    distances: str | None
+    blobs: dict
 
     @property
     def size(self):
         """How many bytes it takes."""
         entry = json.dumps(self.entry, separators=(",", ":"))
-        parts = [entry, self.positions, self.distances or ""]
-        return sum(len(part) + FRAME_OF_BLOB for part in parts)
-
-
-def distance_unit(study, directory):
-    """The largest displacement [m], by which distances are divided; None where it is not known or
-    nothing moves."""
-    sources = (
-        read_json(os.path.join(directory, "motions.json")).get("displacement"),
-        look(study.reference, "scales", "displacement"),
-    )
-    known = [value for value in map(number_or_none, sources) if value and value > 0]
-    return known[0] if known else None
+        return len(entry) + sum(len(blob) + FRAME_OF_BLOB for blob in self.blobs.values())
 
 
 def run_options(sidecar):
@@ -61,7 +47,7 @@ def is_of_another_study(study, origin):
     pairs = (
         (run_options(origin), run_options(study.sidecar)),
         (look(origin, "scene", "hash"), look(study.sidecar, "scene", "hash")),
-        (number_or_none(origin.get("until")), study.record.until),
+        (origin.get("until"), study.record.until),
     )
     return any(None not in pair and pair[0] != pair[1] for pair in pairs)
 
@@ -73,9 +59,8 @@ def missing_motions(origin):
         notes.append(
             f"Keeping motions was interrupted by {origin['interrupted']}: some are missing."
         )
-    more = origin.get("runs_left_out")
-    if is_number(more) and more > 0:
-        notes.append(f"There was no room in motions/ for {more:g} more runs.")
+    if origin.get("runs_left_out"):
+        notes.append(f"There was no room in motions/ for {origin['runs_left_out']} more runs.")
     return notes
 
 
@@ -84,13 +69,14 @@ def open_all(directory, rows):
     opened, notes = [], []
     for row in rows:
         try:
-            motion = open_motion(directory, row.file)
+            motion = open_motion(directory, row["file"])
         except BadInput as error:
             notes.append(f"{error} It is not shown.")
             continue
         if opened and motion.nodes != opened[0][1].nodes:
             motion.file.close()
-            notes.append(f"{row.file} has other nodes than {opened[0][0].file}. It is not shown.")
+            other = opened[0][1].name
+            notes.append(f"{motion.name} has other nodes than {other}. It is not shown.")
             continue
         opened.append((row, motion))
     return opened, notes
@@ -99,54 +85,49 @@ def open_all(directory, rows):
 class Encoder:
     """Makes entries of a page's `motion` out of open files."""
 
-    def __init__(self, study, opened, energies):
+    def __init__(self, study, origin, opened, energies):
         self.opened = opened
         self.energies = energies
-        first_is_reference = opened[0][0].role == "reference"
-        self.box = box_of([motion for _, motion in opened], first_is_reference)
-        self.unit = distance_unit(study, study.directory)
-        methods = list(dict.fromkeys(run.method for run in study.runs))
-        self.methods = {name: index for index, name in enumerate(methods)}
+        first_is_reference = opened[0][0]["role"] == "reference"
+        self.low, self.size = box_of([motion for _, motion in opened], first_is_reference)
+        # The largest displacement [m], by which distances are divided; None where it is not known
+        # or nothing moves.
+        known = look(study.reference, "scales", "displacement")
+        self.unit = origin.get("displacement") or known or None
         self.knobs = [run.knob_words for run in study.runs]
         self.points = {}
         for index, run in enumerate(study.runs):
             self.points.setdefault((run.method, run.knob, run.value), index)
 
-    def entry(self, row, motion, frames):
-        """What the page says of a run beside its blobs."""
-        label = row.method or row.role
-        point = self.points.get((row.method, row.knob, row.value))
-        if point is not None:
-            label += f" at {self.knobs[point]}"
-        return {
-            "role": "reference" if row.role == "reference" else "run",
-            "point": point,
-            "method": self.methods.get(row.method),
-            "label": label,
-            "why": row.why,
-            "outcome": row.outcome,
-            "t_reached": row.t_reached if math.isfinite(row.t_reached) else None,
-            "times": motion.times[list(frames)].tolist(),
-            "energy": self.energies.get(row.file),
-            "seconds": row.seconds,
-        }
-
     def encode(self, run, frames):
         """A run at the frames of these numbers."""
         row, motion = self.opened[run]
-        steps, left_box = quantised(motion.positions(frames), self.box.low, self.box.size)
-        distances = motion.distances(frames) if self.unit and row.role != "reference" else None
-        return EncodedRun(
-            self.entry(row, motion, frames) | {"left_box": left_box},
-            positions_blob(steps),
-            None if distances is None else distances_blob(distances / self.unit),
-        )
+        steps, left_box = quantised(motion.positions(frames), self.low, self.size)
+        is_compared = self.unit and row["role"] != "reference"
+        distances = motion.distances(frames) if is_compared else None
+        point = self.points.get((row["method"], row["knob"], row["value"]))
+        label = row["method"] or row["role"]
+        entry = {name: row[name] for name in ("why", "outcome", "t_reached", "seconds")}
+        entry |= {
+            "role": "reference" if row["role"] == "reference" else "run",
+            "point": point,
+            "label": label if point is None else f"{label} at {self.knobs[point]}",
+            "times": motion.times[list(frames)].tolist(),
+            "energy": self.energies.get(row["file"]),
+            "left_box": left_box,
+            "positions": f"p{run}",
+            "distances": None if distances is None else f"d{run}",
+        }
+        blobs = {f"p{run}": positions_blob(steps)}
+        if distances is not None:
+            blobs[f"d{run}"] = distances_blob(distances / self.unit)
+        return EncodedRun(entry, blobs)
 
 
-def pack(study, opened, energies, room):
-    """The page's `motion` and its blobs; without a motion, a sentence on why there is none."""
+def pack(study, origin, opened, energies, notes, room):
+    """The page's `motion` with these notes, and its blobs; without a motion, all notes."""
     first = opened[0][1]
-    encoder = Encoder(study, opened, energies)
+    encoder = Encoder(study, origin, opened, energies)
     blobs = {"s0": index_blob(first.springs)}
     if len(first.faces):
         blobs["f0"] = index_blob(first.faces)
@@ -156,30 +137,22 @@ def pack(study, opened, energies, room):
     counts = [len(motion.times) for _, motion in opened]
     runs = fit(counts, room, encoder.encode)
     if runs is None:
-        return (
-            None,
-            {},
-            ["The motions are too large for this page; the files in motions/ hold them."],
-        )
-    entries = []
-    for number, run in enumerate(runs):
-        blobs[f"p{number}"] = run.positions
-        names = {"positions": f"p{number}", "distances": None}
-        if run.distances is not None:
-            names["distances"] = f"d{number}"
-            blobs[f"d{number}"] = run.distances
-        entries.append(run.entry | names)
-    dimension = look(study.sidecar, "scene", "dimension")
+        words = "The motions are too large for this page; the files in motions/ hold them."
+        return None, {}, [*notes, words]
+    for run in runs:
+        blobs |= run.blobs
+    entries = [run.entry for run in runs]
     part = {
-        "dimension": dimension if dimension in (1, 2, 3) else 3,
+        "dimension": look(study.sidecar, "scene", "dimension") or 3,
         "nodes": first.nodes,
         "springs": "s0",
         "faces": "f0" if "f0" in blobs else None,
         "pinned": pinned,
-        "low": encoder.box.low.tolist(),
-        "size": encoder.box.size,
+        "low": encoder.low.tolist(),
+        "size": encoder.size,
         "distance_unit": encoder.unit,
-        "notes": what_was_left_out(opened, entries),
+        # Missing motions are named beside the others.
+        "notes": notes + what_was_left_out(opened, entries),
         "runs": entries,
     }
     return part, blobs, []
@@ -213,15 +186,16 @@ def motion_part(study, room):
     try:
         rows = read_motion_rows(study.directory)
         opened, notes = open_all(study.directory, rows)
-        energies, more = energies_or_note(study.directory)
-        notes += missing_motions(origin) + more
+        notes += missing_motions(origin)
+        energies = {}
+        try:
+            energies = read_energies(study.directory)
+        except BadInput as error:
+            words = in_folder(error, study.directory)
+            notes.append(f"{words} The motions are shown without energies.")
         if not opened:
             return None, {}, notes
-        part, blobs, more = pack(study, opened, energies, room)
-        if part is None:
-            return None, {}, notes + more
-        # Missing motions are named beside the others.
-        return part | {"notes": notes + part["notes"]}, blobs, []
+        return pack(study, origin, opened, energies, notes, room)
     except BadInput as error:
         reason = in_folder(error, study.directory).removesuffix(".")
         return None, {}, [*notes, f"The motions cannot be shown: {reason}."]
@@ -235,12 +209,3 @@ def motion_part(study, room):
 def in_folder(error, directory):
     """The words of an error, in one line, in which files are named as seen from the folder."""
     return " ".join(str(error).replace(os.path.join(directory, ""), "").split())
-
-
-def energies_or_note(directory):
-    """The energies over time, and a sentence where their table is broken."""
-    try:
-        return read_energies(directory), []
-    except BadInput as error:
-        words = in_folder(error, directory)
-        return {}, [f"{words} The motions are shown without energies."]

@@ -4,7 +4,6 @@ import json
 import re
 from pathlib import Path
 
-from measurements import BadInput
 from static_part import visible
 
 HOME = Path(__file__).resolve().parent
@@ -24,13 +23,8 @@ MARK = re.compile(r"<!-- qddot:(style|scripts|data|static) -->|\{\{(title)\}\}")
 
 
 def read_source(name):
-    """A file of this folder. Raises BadInput where it cannot be read."""
-    path = HOME / name
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise BadInput(f"{path} cannot be read: {reason}.") from error
+    """A file of this folder."""
+    return (HOME / name).read_text(encoding="utf-8")
 
 
 def inlined(name):
@@ -92,8 +86,7 @@ def data_elements(content, blobs):
 
 
 def html(title, content, blobs, static):
-    """The whole page; `static`: what stands in <noscript>. Raises BadInput where a part of the page
-    cannot be read."""
+    """The whole page; `static`: what stands in <noscript>."""
     parts = {
         "style": "".join(element("style", inlined(name)) for name in STYLES),
         "scripts": "".join(element("script", text) for text in scripts()),

@@ -10,12 +10,9 @@ from PIL import Image
 COLORS = 128
 SMALL = 150_000  # bytes of a file that is taken as it is
 MOST = 2_500_000  # bytes of all pictures in a page
-
-
 CHART = "chart.png"
-# The pictures that a study may leave: the file's name, its title and what it shows in words.
+# The others that studies may leave: the title and what it shows in words.
 PICTURES = {
-    CHART: ("Time against error", "time of a run against its error, by method"),
     "stability_map.png": (
         "Where each method is stable",
         "outcome of whole runs by method and step size",
@@ -50,12 +47,8 @@ def reduced(data):
         return min(data, buffer.getvalue(), key=len)
 
 
-def data_uri(directory, name):
-    """The picture as a data URI; None where there is no such file. Raises OSError where it is no
-    picture."""
-    path = os.path.join(directory, name)
-    if not os.path.exists(path):
-        return None
+def data_uri(path):
+    """The picture in a file as a data URI. Raises OSError where it is no picture."""
     with open(path, "rb") as file:
         data = reduced(file.read())
     return "data:image/png;base64," + base64.b64encode(data).decode("ascii")
@@ -63,22 +56,21 @@ def data_uri(directory, name):
 
 def pictures_part(directory):
     """The page's `pictures`, the chart's data URI or None, and sentences on pictures left out."""
-    entries, notes, chart, size = [], [], None, 0
-    for name, (title, alt) in PICTURES.items():
+    uris, notes = {}, []
+    for name in (CHART, *PICTURES):
+        path = os.path.join(directory, name)
+        if not os.path.exists(path):
+            continue
         try:
-            uri = data_uri(directory, name)
+            uri = data_uri(path)
         # Pillow raises these for a file that is no whole picture.
         except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
             notes.append(f"{name} is no picture that can be read.")
             continue
-        if uri is None:
-            continue
-        if size + len(uri) > MOST:
+        if sum(map(len, uris.values())) + len(uri) > MOST:
             notes.append(f"{name} is too large for this page; it lies in the folder.")
             continue
-        size += len(uri)
-        if name == CHART:
-            chart = uri
-        else:
-            entries.append({"title": title, "alt": alt, "src": uri})
+        uris[name] = uri
+    chart = uris.pop(CHART, None)
+    entries = [dict(zip(("title", "alt"), PICTURES[name])) | {"src": uris[name]} for name in uris]
     return entries, chart, notes

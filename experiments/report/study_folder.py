@@ -6,7 +6,7 @@ import math
 import os
 from dataclasses import dataclass
 
-import measurements
+from measurements import parse, read_rows
 from record import Record, read_record
 
 
@@ -17,15 +17,11 @@ def look(content, *keys):
     return content
 
 
-def is_number(value):
-    """Whether a value of a JSON file is a finite number."""
-    is_real = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return is_real and math.isfinite(value)
-
-
-def number_or_none(value):
-    """The number, or None for what is no finite number."""
-    return value if is_number(value) else None
+def cell(path, line, row, column):
+    """The number in a cell of a table; None where there is none, as in a column that is missing.
+    Raises BadInput for a cell that is no number."""
+    value = parse(path, line, row, column, False) if column in row else math.nan
+    return value if math.isfinite(value) else None
 
 
 def read_json(path):
@@ -47,7 +43,6 @@ class Study:
     """
 
     directory: str
-    columns: list
     rows: list
     record: Record
     sidecar: dict
@@ -61,12 +56,7 @@ class Study:
     @property
     def method_notes(self):
         """What points.json says of each method: {name: {"summary": ..., "takes": [...]}}."""
-        notes = self.sidecar.get("methods")
-        return {
-            note["name"]: note
-            for note in (notes if isinstance(notes, list) else [])
-            if isinstance(look(note, "name"), str)
-        }
+        return {look(note, "name"): note for note in self.sidecar.get("methods") or []}
 
 
 def read_study(directory):
@@ -74,8 +64,7 @@ def read_study(directory):
     path = os.path.join(directory, "points.csv")
     return Study(
         directory,
-        measurements.read_header(path),
-        measurements.read_rows(path, ("method",)),
+        read_rows(path, ("method",)),
         read_record(directory),
         read_json(os.path.join(directory, "points.json")),
         read_json(os.path.join(directory, "reference.json")),

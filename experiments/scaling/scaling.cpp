@@ -22,18 +22,46 @@
 //                 of 95 % and what theory gives at the same sizes; `fill` is of the factors' bytes
 //  roofline.csv   evaluations of f alone; the triad's bandwidth over arrays of the same size, and
 //                 the peak of multiplications and additions
+#include <vector>
+
 #include <fmt/format.h>
 
-#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/memory.hpp"
-#include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/scaling/scaling_tables.hpp"
+#include "experiments/scaling/scaling_run.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::scaling {
 namespace {
+
+void print(const std::vector<Exponent>& exponents) {
+  fmt::print("\n{:<8} {:<20} {:<14} {:>8}   {:<14} {:>6}\n", "scene", "method", "phase", "exponent",
+             "95 %", "theory");
+  for (const Exponent& e : exponents) {
+    fmt::print("{:<8} {:<20} {:<14} {:>8.2f}   {:.2f} to {:.2f}   {:>6.2f}\n", e.scene, e.method,
+               e.phase, e.fit.exponent, e.fit.low, e.fit.high, e.theory);
+  }
+}
+
+// f at each size, beside the peak of the machine [operations/s].
+void print(const std::vector<ScalingSize>& sizes, double peak) {
+  fmt::print("\nf: {:.3g} GFlop/s is the peak\n{:<8} {:>9} {:>12} {:>8} {:>8} {:>8}\n", 1e-9 * peak,
+             "scene", "nodes", "M springs/s", "GB/s", "triad", "GFlop/s");
+  for (const ScalingSize& size : sizes) {
+    const auto& [seconds, bytes, flops] = size.force;
+    fmt::print("{:<8} {:>9} {:>12.4g} {:>8.3g} {:>8.3g} {:>8.3g}\n", size.scene, size.nodes,
+               1e-6 * size.springs / seconds, 1e-9 * bytes / seconds, 1e-9 * size.triad,
+               1e-9 * flops / seconds);
+  }
+}
+
+void print(const std::vector<LeftOut>& left_out) {
+  for (const auto& [scene, method, nodes, why] : left_out) {
+    fmt::print("left out: {}{}{} from {:.0f} nodes on: {}\n", scene, method.empty() ? "" : " with ",
+               method, nodes, why);
+  }
+}
 
 constexpr double gigabyte = 1e9;
 constexpr double taken_of_free = 0.8;   // the fraction of free memory that is used by default
@@ -46,19 +74,16 @@ void require_nodes(double nodes, const std::string& option) {
 }
 
 // Adds the scenes that were measured, and what was not, to the record of the tables.
-nlohmann::json noted(nlohmann::json origin, const ScalingRun& run) {
-  origin["scenes"] = origin["left_out"] = nlohmann::json::array();
-  for (const ScalingSize& size : run.sizes()) {
+nlohmann::json noted(nlohmann::json origin, const ScalingResults& results) {
+  origin["scenes"] = nlohmann::json::array();
+  for (const ScalingSize& size : results.sizes) {
     origin["scenes"].push_back({{"name", size.scene},
                                 {"hash", size.hash},
                                 {"nodes", size.nodes},
                                 {"springs", size.springs},
                                 {"unknowns", size.unknowns}});
   }
-  for (const auto& [scene, method, nodes, why] : run.left_out()) {
-    origin["left_out"].push_back(
-        {{"scene", scene}, {"method", method}, {"nodes", nodes}, {"why", why}});
-  }
+  origin["left_out"] = results.left_out;
   return origin;
 }
 
@@ -100,9 +125,14 @@ int main(int argc, char** argv) {
   auto no_reduce = p.words("--no-reduce", {"dimension", "mirror"},
                            "a,b,...: reductions of the scenes to leave out");
   p.out("the folder for the tables");
-  auto& costs = p.table("scaling.csv", cost_columns());
-  auto& exponents = p.table("exponents.csv", exponent_columns());
-  auto& roofline = p.table("roofline.csv", roofline_columns());
+  auto& costs =
+      p.table("scaling.csv", {"scene", "nodes", "springs", "method", "phase", "seconds", "bytes"});
+  auto& exponents = p.table("exponents.csv", {"scene", "method", "phase", "exponent", "low", "high",
+                                              "theory", "nodes_from", "nodes_to"});
+  auto& roofline =
+      p.table("roofline.csv", {"scene", "nodes", "springs", "seconds", "springs_per_second",
+                               "bytes_per_spring", "flops_per_spring", "working_set_bytes",
+                               "triad_bytes_per_second", "peak_flops_per_second"});
 
   return p.run(argc, argv, [&] {
     if (least > most)
@@ -123,20 +153,27 @@ int main(int argc, char** argv) {
             run.measure(study, find_sized_scenes((*names)[i]), sizes_between(least, most, sizes),
                         solved[i]);
           }
-          if (run.has_failed()) study.fall_short();
+          if (run.results().has_failed) study.fall_short();
         },
         [&] {
-          const auto fits = exponents_of(run.costs());
-          std::vector<RooflineRow> rows;
+          const ScalingResults& results = run.results();
           const double peak = peak_flops(look_for_peak);
-          for (const ScalingSize& size : run.sizes()) rows.push_back({size, peak});
-          for (const PhaseCost& cost : run.costs()) costs.add(cost);
-          for (const Exponent& exponent : fits) exponents.add(exponent);
-          for (const RooflineRow& row : rows) roofline.add(row);
+          const auto fits = exponents_of(results.costs);
+          for (const auto& [scene, nodes, springs, method, phase, seconds, bytes] : results.costs)
+            costs->row(scene, nodes, springs, method, phase, seconds, bytes);
+          for (const Exponent& e : fits) {
+            exponents->row(e.scene, e.method, e.phase, e.fit.exponent, e.fit.low, e.fit.high,
+                           e.theory, e.nodes_from, e.nodes_to);
+          }
+          for (const ScalingSize& size : results.sizes) {
+            const auto& [seconds, bytes, flops] = size.force;
+            roofline->row(size.scene, size.nodes, size.springs, seconds, size.springs / seconds,
+                          bytes / size.springs, flops / size.springs, bytes, size.triad, peak);
+          }
           print(fits);
-          print(rows, peak);
-          print(run.left_out());
-          nlohmann::json origin = noted(p.origin(), run);
+          print(results.sizes, peak);
+          print(results.left_out);
+          nlohmann::json origin = noted(p.origin(), results);
           origin["step_size"] = *step_size;
           origin["no_reduce"] = *no_reduce;
           return origin;

@@ -24,8 +24,7 @@ namespace qddot::scaling {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhaseCost, scene, nodes, springs, method, phase, seconds, bytes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ForceRate, seconds, bytes, flops)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScalingSize, scene, hash, nodes, springs, unknowns, force, triad)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOut, scene, method, nodes, why)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SizeResult, sizes, methods, costs, left_out, has_failed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScalingResults, sizes, methods, costs, left_out, has_failed)
 
 namespace {
 
@@ -85,6 +84,94 @@ void append(const std::vector<T>& more, std::vector<T>& all) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
+// The times of a step of a method and of its phases [s], on the mean over a run.
+struct StepPhases {
+  Outcome outcome{};  // what follows means something only where it is reached_end
+  std::string message;
+  double total = 0;  // wall time
+  Seconds parts;     // of it
+  double rest() const {
+    return total - parts.force - parts.stiffness - parts.factorization - parts.solve;
+  }
+};
+
+// A spring's k and l0 are read at each of its ends (see SpringsByNode). An unknown's q and weight
+// are read, its f is written, and its position goes to memory and back.
+constexpr double bytes_of_spring = 2 * 2 * sizeof(double);
+constexpr double bytes_of_unknown = 5 * sizeof(double);
+// Operations at each end. d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l:
+// 1; f_i += (tau/l) d: 6.
+constexpr double flops_of_spring = 2 * 18;
+
+// The least time [s] of a timed run, unless that takes more than the most steps. Short runs are
+// disturbed least.
+constexpr double shortest_run = 5e-3;
+constexpr double most_steps = 10000, least_steps = 3;
+// The runs of which the least counts take this time together [s], or are this many.
+constexpr double timed_together = 0.3;
+constexpr int fewest_runs = 2;
+// A first step of at least this time [s] counts as any other, and is the only one.
+constexpr double own_warm_up = 5;
+
+struct Run {
+  Summary summary;
+  double seconds;
+};
+
+Run run(Integrator& integrator, double step_size, double steps, const ReducedScene& scene) {
+  State state = scene.initial();
+  Run result;
+  result.seconds =
+      seconds_of([&] { result.summary = integrator.advance(state, steps * step_size); });
+  return result;
+}
+
+// The cost of a step of the run, without the forces beyond `forces` a step.
+StepPhases phases_of(const Run& run, double forces) {
+  const double steps = static_cast<double>(run.summary.counts.steps);
+  const double all = static_cast<double>(run.summary.counts.force_evaluations);
+  const auto& [force, stiffness, factorization, solve] = run.summary.seconds;
+  const double before = all > 0 ? force * (1 - forces * steps / all) : 0;
+  return {run.summary.outcome,
+          run.summary.message,
+          (run.seconds - before) / steps,
+          {(force - before) / steps, stiffness / steps, factorization / steps, solve / steps}};
+}
+
+// The fastest of evaluations of `seconds` at the scene's start. `springs`: how many of them move.
+ForceRate force_rate(const ReducedScene& scene, double springs, double seconds) {
+  const System& system = scene.system();
+  const Vec& q = scene.initial().q;
+  Vec f(system.size());
+  return {
+      .seconds = least_seconds(seconds, [&] { system.force(q, f); }),
+      .bytes = bytes_of_spring * springs + bytes_of_unknown * static_cast<double>(system.size()),
+      .flops = flops_of_spring * springs};
+}
+
+// Measures the cost of a step of `step_size` [s] from the scene's start. After one step to warm up,
+// it repeats runs long enough for the clock; the fastest counts. A first step of some seconds is
+// not repeated. Forces before the first step are subtracted.
+StepPhases step_phases(Integrator& integrator, double step_size, const ReducedScene& scene) {
+  const Run first = run(integrator, step_size, 1, scene);
+  const auto forces = [](const Run& r) {
+    return static_cast<double>(r.summary.counts.force_evaluations);
+  };
+  if (first.summary.outcome != Outcome::reached_end || first.seconds >= own_warm_up) {
+    return phases_of(first, forces(first));
+  }
+  const double steps = std::clamp(std::ceil(shortest_run / first.seconds), least_steps, most_steps);
+  Run least;
+  double spent = 0;
+  for (int i = 0; i < fewest_runs || spent < timed_together; ++i) {
+    Run next = run(integrator, step_size, steps, scene);
+    if (next.summary.outcome != Outcome::reached_end) return phases_of(next, 0);
+    spent += next.seconds;
+    if (i == 0 || next.seconds < least.seconds) least = std::move(next);
+  }
+  return phases_of(least, (forces(least) - forces(first)) / (steps - 1));
+}
+
 }  // namespace
 
 std::vector<SolvedMethod> solved_methods(const SizedScenes& scenes, const Reductions& reductions,
@@ -113,13 +200,13 @@ void ScalingRun::measure(Study& study, const SizedScenes& scenes, const std::vec
   progress().begin(sizes.size());
   for (const double size : sizes) {
     if (methods.empty()) return;
-    const SizeResult result = study.piece(fmt::format("{} {:.17g}", scenes.name, size), [&] {
+    const ScalingResults result = study.piece(fmt::format("{} {:.17g}", scenes.name, size), [&] {
       return nlohmann::json(measured_size(scenes, size, methods));
     });
-    append(result.costs, costs_);
-    append(result.sizes, sizes_);
-    append(result.left_out, left_out_);
-    has_failed_ = has_failed_ || result.has_failed;
+    append(result.costs, all_.costs);
+    append(result.sizes, all_.sizes);
+    append(result.left_out, all_.left_out);
+    all_.has_failed |= result.has_failed;
     progress().finish(at(scenes.name, std::round(size)));
     if (result.sizes.empty()) return;
     std::erase_if(methods, [&](const SolvedMethod& solved) {
@@ -128,9 +215,9 @@ void ScalingRun::measure(Study& study, const SizedScenes& scenes, const std::vec
   }
 }
 
-SizeResult ScalingRun::measured_size(const SizedScenes& scenes, double size,
-                                     std::vector<SolvedMethod> methods) const {
-  SizeResult result;
+ScalingResults ScalingRun::measured_size(const SizedScenes& scenes, double size,
+                                         std::vector<SolvedMethod> methods) const {
+  ScalingResults result;
   if (!fits(scenes, "", phases_before, size, passing_memory, result)) return result;
   progress().now_at(at(scenes.name, std::round(size)));
   std::optional<Scene> drawn;
@@ -171,7 +258,7 @@ SizeResult ScalingRun::measured_size(const SizedScenes& scenes, double size,
 }
 
 void ScalingRun::measure_method(const SolvedMethod& solved, const ReducedScene& scene,
-                                double step_size, SizeResult& result) const {
+                                double step_size, ScalingResults& result) const {
   const Method& method = *solved.method;
   const std::string name = solved.name();
   const System& system = scene.system();
@@ -209,13 +296,13 @@ void ScalingRun::measure_method(const SolvedMethod& solved, const ReducedScene& 
 // leaves out what does not. `memory`: how many times what they will hold is held at once.
 bool ScalingRun::fits(const SizedScenes& scenes, const std::string& method,
                       const std::vector<std::string>& phases, double nodes, double memory,
-                      SizeResult& result) const {
+                      ScalingResults& result) const {
   double seconds = 0, bytes = 0;
-  for (const std::string& phase : phases) {
-    seconds += expected_seconds(costs_, scenes, method, phase, nodes);
-    if (method.empty()) bytes += expected_bytes(costs_, scenes, method, phase, nodes);
-  }
-  if (!method.empty()) bytes = expected_bytes(costs_, scenes, method, "step", nodes);
+  for (const std::string& phase : phases)
+    seconds += expected_seconds(all_.costs, scenes, method, phase, nodes);
+  // A step's bytes are all that its method allocates.
+  for (const std::string& phase : method.empty() ? phases : std::vector<std::string>{"step"})
+    bytes += expected_bytes(all_.costs, scenes, method, phase, nodes);
   bytes *= memory;
   if (method.empty() && bytes == 0) {  // the first size: nothing is measured yet
     const auto count = [](double x) { return static_cast<std::size_t>(x); };

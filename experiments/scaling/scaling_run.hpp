@@ -5,7 +5,6 @@
 
 #include "experiments/kit/study.hpp"
 #include "experiments/scaling/phase_table.hpp"
-#include "experiments/scaling/step_phases.hpp"
 #include "qddot/algebra/solver.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/scene/reduce/reduced_scene.hpp"
@@ -39,6 +38,14 @@ std::vector<SolvedMethod> solved_methods(const SizedScenes& scenes, const Reduct
                                          const std::vector<std::string>& methods,
                                          const std::vector<std::string>& solvers);
 
+// The rate at which f(q) is evaluated, and the traffic and work of one evaluation.
+struct ForceRate {
+  double seconds = 0;  // of one evaluation
+  // The bytes that one evaluation must move, each array once, and its operations (a root and a
+  // division are one each). The bytes are also the working set.
+  double bytes = 0, flops = 0;
+};
+
 // One scene at one size: the origin of its numbers, and the rate of its f.
 struct ScalingSize {
   std::string scene, hash;
@@ -54,14 +61,15 @@ struct LeftOut {
   double nodes;
   std::string why;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeftOut, scene, method, nodes, why)
 
-// The results of a scene at one size.
-struct SizeResult {
-  std::vector<ScalingSize> sizes{};    // this one, unless the scene does not fit the limits
-  std::vector<std::string> methods{};  // those that fit the limits
+// The results of a scene at one size, or of all.
+struct ScalingResults {
+  std::vector<ScalingSize> sizes{};    // without scenes that do not fit the limits
+  std::vector<std::string> methods{};  // those that fit the limits, of one size
   std::vector<PhaseCost> costs{};
   std::vector<LeftOut> left_out{};
-  bool has_failed = false;  // some run did not reach its end
+  bool has_failed = false;  // some run did not reach its end; it is among what is left out
 
   void leave_out(const std::string& method, const std::string& why) {
     left_out.push_back({sizes.back().scene, method, sizes.back().nodes, why});
@@ -84,26 +92,19 @@ class ScalingRun {
   void measure(Study& study, const SizedScenes& scenes, const std::vector<double>& sizes,
                std::vector<SolvedMethod> methods);
 
-  const std::vector<PhaseCost>& costs() const { return costs_; }
-  const std::vector<ScalingSize>& sizes() const { return sizes_; }
-  const std::vector<LeftOut>& left_out() const { return left_out_; }
-  // Whether some run did not reach its end; it is among what is left out.
-  bool has_failed() const { return has_failed_; }
+  const ScalingResults& results() const { return all_; }
 
  private:
-  SizeResult measured_size(const SizedScenes& scenes, double size,
-                           std::vector<SolvedMethod> methods) const;
+  ScalingResults measured_size(const SizedScenes& scenes, double size,
+                               std::vector<SolvedMethod> methods) const;
   void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size,
-                      SizeResult& result) const;
+                      ScalingResults& result) const;
   bool fits(const SizedScenes& scenes, const std::string& method,
             const std::vector<std::string>& phases, double nodes, double memory,
-            SizeResult& result) const;
+            ScalingResults& result) const;
 
   ScalingLimits limits_;
-  std::vector<PhaseCost> costs_;
-  std::vector<ScalingSize> sizes_;
-  std::vector<LeftOut> left_out_;
-  bool has_failed_ = false;
+  ScalingResults all_{};
 };
 
 }  // namespace qddot::scaling

@@ -9,8 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/catalogue.hpp"
-#include "experiments/kit/method_options.hpp"
 #include "experiments/motion_files/motion_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/kit/accuracy_choice.hpp"
+#include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 #include "qddot/integrators/registry.hpp"
 

@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/node_table.hpp"
+#include "experiments/kit/whole_file.hpp"
 #include "qddot/measure/motion/samples.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 namespace qddot::simulate {
 
-Outputs::Outputs(const Arguments& a, const Every& every, const Scene& start,
+Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, const Scene& start,
                  const ReducedScene& scene, double until)
     : scene_(scene),
       trajectory_times_(samples(every.trajectory, until)),
@@ -34,6 +36,10 @@ Outputs::Outputs(const Arguments& a, const Every& every, const Scene& start,
             : motion_files::fields_named(a.motion_fields, a.motion_path, "--motion-fields");
     motion_ = motion_files::open_motion(a.motion_path, start, scene, false, fields);
   }
+  if (!a.written_scene_path->empty()) {
+    WholeFile file(a.written_scene_path);
+    write_scene(file, drawn);
+  }
   if (looks_on_the_way()) behind_.emplace([this](const State& state) { see(state); });
 }
 
@@ -44,11 +50,7 @@ Observer Outputs::observer() {
 
 void Outputs::see(const State& state) {
   if (trajectory_ && is_sample(trajectory_times_, state.t)) {
-    const auto nodes = scene_.expand(state);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      trajectory_->field(state.t);
-      write_node(*trajectory_, i, nodes[i], scene_.dimension());
-    }
+    write_nodes(*trajectory_, scene_.expand(state), scene_.dimension(), state.t);
     trajectory_->flush_if_large();
   }
   if (energy_ && is_sample(energy_times_, state.t)) {
@@ -63,10 +65,7 @@ void Outputs::see(const State& state) {
 void Outputs::finish(const State& state, const nlohmann::json& origin) {
   if (behind_) behind_->finish();
   if (final_) {
-    const auto nodes = scene_.expand(state);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      write_node(*final_, i, nodes[i], scene_.dimension());
-    }
+    write_nodes(*final_, scene_.expand(state), scene_.dimension());
   }
   const std::array files = {final_.get(), trajectory_.get(), energy_.get()};
   for (CsvFile* file : files) {
@@ -77,6 +76,11 @@ void Outputs::finish(const State& state, const nlohmann::json& origin) {
     if (file) file->commit();
   }
   if (motion_) motion_->commit();
+}
+
+void write_scene(WholeFile& file, const Scene& drawn) {
+  file.write(signed_text(to_toml(drawn)));
+  file.commit();
 }
 
 std::string counts_in_words(const Counts& c) {

@@ -19,10 +19,11 @@ namespace qddot::simulate {
 // other programs), and the energy over time.
 class Outputs {
  public:
-  // `start`: the scene that `scene` was reduced from. The scene must outlive it. Throws
-  // InvalidInput if a file cannot be written.
-  Outputs(const Arguments& a, const Every& every, const Scene& start, const ReducedScene& scene,
-          double until);
+  // Writes the scene as `drawn` at once, where --write-scene asks for that. `start`: the scene that
+  // `scene` was reduced from. The scene must outlive it. Throws InvalidInput if a file cannot be
+  // written.
+  Outputs(const Arguments& a, const Every& every, const Scene& drawn, const Scene& start,
+          const ReducedScene& scene, double until);
 
   // Asks for the times of the samples.
   Observer observer();
@@ -42,6 +43,9 @@ class Outputs {
   std::unique_ptr<motion_files::MotionFile> motion_;
   std::optional<BackgroundObserver> behind_;  // writes while the run goes on
 };
+
+// Writes a scene file that is exact to the last bit.
+void write_scene(WholeFile& file, const Scene& drawn);
 
 // The counts of a run in words.
 std::string counts_in_words(const Counts& counts);

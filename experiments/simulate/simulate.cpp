@@ -10,24 +10,27 @@
 //   simulate --list-methods
 //   simulate --list-scenes
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/catalogue.hpp"
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/simulate/answer.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/outputs.hpp"
 #include "experiments/simulate/pace.hpp"
-#include "experiments/simulate/written_scene.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
+#include "qddot/measure/speed/measurement.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/scene/explain.hpp"
+#include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::simulate {
@@ -38,6 +41,160 @@ constexpr double shortest_patience = 1, longest_patience = 5;
 
 // The time [s] that an interruption waits for the present step.
 constexpr double patience_with_a_step = 60;
+
+// The time [s] that an interruption waits for the results found so far.
+constexpr double patience_with_an_answer = 60;
+
+const char* yes(bool holds) { return holds ? "yes" : "no"; }
+
+// Print the methods, or the scene generators with their parameters, as a table or as CSV.
+void print_methods(bool as_csv) {
+  if (as_csv) {
+    Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
+             "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
+             "takes_iterations", "summary", "source", "stock_of"});
+    for (const Method& m : methods()) {
+      csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
+              yes(m.is(Trait::symplectic)),
+              yes(m.asks(Need::stiffness) || m.is(Trait::bounds_steps)),
+              yes(m.is(Trait::accepts_massless)), yes(m.asks(Need::constant_stiffness)),
+              yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
+              yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of);
+    }
+    fmt::print("{}", csv.text());
+    return;
+  }
+  fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", "name", "order", "family", "knob", "what it is");
+  for (const Method& m : methods()) {
+    fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", m.name, m.order, family_name(m.family),
+               knob_name(m.knob), m.summary);
+  }
+}
+
+void print_generators(bool as_csv) {
+  if (as_csv) {
+    Csv csv({"scene", "parameter", "standard", "low", "high", "meaning", "summary"});
+    for (const Generator& g : generators()) {
+      for (const GeneratorParameter& p : g.parameters) {
+        csv.row(g.name, p.name, p.standard, p.low, p.high, p.meaning, g.summary);
+      }
+    }
+    fmt::print("{}", csv.text());
+    return;
+  }
+  for (const Generator& g : generators()) {
+    fmt::print("{:<12} {}\n", g.name, g.summary);
+    for (const GeneratorParameter& p : g.parameters) {
+      fmt::print("  {:<22} {:>8}  {}\n", p.name, p.standard, p.meaning);
+    }
+  }
+}
+
+void refuse_choices(const Program& program) {
+  for (const char* option :
+       {"--method", "--step-size", "--rtol", "--atol", "--max-order", "--stability-detection",
+        "--iterations", "--solve-tolerance", "--spectral-radius", "--solver"}) {
+    if (program.has(option)) {
+      throw InvalidInput(fmt::format(
+          "{} is not for --accuracy, which chooses the method and its knob: leave out one of both",
+          option));
+    }
+  }
+}
+
+// Repeats the method's run for the outputs on its way; returns its end.
+State seen(const Answer& answer, const std::shared_ptr<const ReducedScene>& model, double until,
+           Outputs& output) {
+  Simulation run(model, *answer.method, options_for(*answer.method, answer.value, *model));
+  output.see(run.state());
+  run.advance(until, output.observer(), interruption());
+  return run.state();
+}
+
+// Numbers that are not finite become null where this is written.
+nlohmann::json about(const Answer& answer, const Arguments& a) {
+  return {{"accuracy", *a.accuracy},
+          {"accuracy_of", a.accuracy_of->empty() ? "positions" : *a.accuracy_of},
+          {"is_reached", answer.is_reached},
+          {"why", answer.why},
+          {"method", answer.method->name},
+          {"knob", knob_name(answer.method->knob)},
+          {"value", answer.value},
+          {"error_estimate", answer.error_estimate},
+          {"error_estimate_kind", name(answer.error_estimate_kind)},
+          {"horizon", answer.horizon},
+          {"lyapunov", answer.lyapunov},
+          {"advised_by", name(answer.advised_by)},
+          {"runs", answer.runs},
+          {"seconds", answer.seconds.total()},
+          {"seconds_by_phase",
+           {{"pilots", answer.seconds.pilots},
+            {"run", answer.seconds.run},
+            {"check", answer.seconds.check}}}};
+}
+
+std::string estimate_in_words(const Answer& answer) {
+  switch (answer.error_estimate_kind) {
+    case EstimateKind::compared:
+      return fmt::format("error at most {:.1e}, as a more accurate run says",
+                         answer.error_estimate);
+    case EstimateKind::refined:
+      return fmt::format("error at most {:.1e}, as a coarser run of the same method says",
+                         answer.error_estimate);
+    case EstimateKind::conserved:
+      return fmt::format("energy error at most {:.1e}, as seen on the way", answer.error_estimate);
+    case EstimateKind::rounding:
+      return fmt::format("error at most {:.1e}, which is rounding", answer.error_estimate);
+    case EstimateKind::none:
+      break;
+  }
+  return "error unknown";
+}
+
+// Computes the motion to an accuracy (--accuracy), with a method and knob of its own choice, and
+// writes the outputs. Prints a sentence on the run and its error bar.
+int answer(const Arguments& a) {
+  refuse_choices(a.p);
+  require_allowed_accuracy(a.accuracy);
+  const AccuracyOf of = accuracy_of(a.accuracy_of);
+  const Every every = every_of(a);
+  require_distinct_outputs(a);
+  Subject subject = subject_of(a.scene, a.until);
+  const auto model = std::make_shared<const ReducedScene>(std::move(subject.reduced));
+  const double until = subject.until;
+
+  Outputs output(a, every, subject.drawn, subject.start, *model, until);
+  wait_for_answer(patience_with_an_answer);
+  progress().stage("looking for the fastest run");
+  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of});
+  progress().wipe();
+  const auto why = answer.is_reached ? std::nullopt : interrupted();
+  if (!answer.method) {  // no run was begun
+    fmt::print(stderr, "simulate: {}\n", answer.why);
+    return why ? why->status : end_not_reached;
+  }
+  if (output.is_asked_for()) {
+    State end = answer.end;
+    if (output.looks_on_the_way()) end = seen(answer, model, until, output);
+    nlohmann::json origin = provenance(a.p.command_line(), subject.drawn, subject.start, *model);
+    origin["outcome"] = name(answer.summary.outcome);
+    origin["t_reached"] = end.t;
+    origin["energy_growth"] = answer.summary.energy_growth;
+    origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
+    origin.update(about(answer, a));
+    output.finish(end, origin);
+  }
+  fmt::print(
+      "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check, {} to find them "
+      "({} run{} in all)\n",
+      in_one_line(subject.drawn.name), until, answer.method->name,
+      knob_in_words(*answer.method, answer.value), estimate_in_words(answer),
+      time_in_words(answer.seconds.run), time_in_words(answer.seconds.check),
+      time_in_words(answer.seconds.pilots), answer.runs, answer.runs == 1 ? "" : "s");
+  if (answer.is_reached) return done;
+  fmt::print(stderr, "simulate: --accuracy {:g} was not reached: {}\n", *a.accuracy, answer.why);
+  return why ? why->status : end_not_reached;
+}
 
 int simulate(const Arguments& a) {
   if (a.list_methods) {
@@ -51,7 +208,8 @@ int simulate(const Arguments& a) {
   require_given(a.scene->name, "--scene", "a generator's name or a scene file");
   if (only_writes_scene(a.p)) {
     require_distinct_outputs(a);
-    WrittenScene(a.written_scene_path).commit(load(a.scene));
+    WholeFile file(a.written_scene_path);  // may be the scene's own, which is read after this
+    write_scene(file, load(a.scene));
     return done;
   }
   if (a.explain) {
@@ -78,9 +236,7 @@ int simulate(const Arguments& a) {
   Simulation run(model, method, options);
   require_atol(run.options());
 
-  WrittenScene written_scene(a.written_scene_path);
-  Outputs output(a, every, start, scene, until);
-  written_scene.commit(drawn);
+  Outputs output(a, every, drawn, start, scene, until);
   output.see(run.state());
   const auto warn = [](const std::string& warning) {
     if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);

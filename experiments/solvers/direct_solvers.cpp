@@ -1,5 +1,6 @@
 #include "experiments/solvers/direct_solvers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <new>
@@ -10,7 +11,15 @@
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/symbolic_factorization.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/model/first_order.hpp"
+
+// C = alpha A B + beta C of column-major matrices (Dongarra, Du Croz, Hammarling, Hanson, ACM TOMS
+// 14 (1988) 1-17), as Fortran calls it.
+extern "C" void dgemm_(const char* transpose_a, const char* transpose_b, const int* m, const int* n,
+                       const int* k, const double* alpha, const double* a, const int* lda,
+                       const double* b, const int* ldb, const double* beta, double* c,
+                       const int* ldc);
 
 namespace qddot::solvers {
 namespace {
@@ -128,6 +137,23 @@ std::unique_ptr<DirectSolver> make(const System& system) {
   return std::make_unique<Solver>(system, options...);
 }
 
+// The number of calls that take about a millisecond.
+template <class Call>
+int calls_in_a_sample(const Call& call) {
+  return std::clamp(static_cast<int>(1e-3 / seconds_of(call)), 1, 1000);
+}
+
+template <class Call>
+double time_of(int calls, const Call& call) {
+  call();  // reloads the caches after the other solvers
+  const double all = seconds_of([&] {
+    for (int i = 0; i < calls; ++i) call();
+  });
+  return all / calls;
+}
+
+double known(double x) { return x > 0 ? x : SolverRow::nothing; }
+
 }  // namespace
 
 const std::vector<DirectSolverKind>& direct_solvers() {
@@ -137,6 +163,55 @@ const std::vector<DirectSolverKind>& direct_solvers() {
                                                     {"eigen", make<EigenSolver>},
                                                     {"klu", make<KluSolver>}};
   return all;
+}
+
+double product_flops(double seconds) {
+  constexpr int n = 480;  // three of them fit about into the second cache
+  constexpr double one = 1, zero = 0;
+  const std::vector<double> a(n * n, 0.5), b = a;
+  std::vector<double> c(n * n);
+  const double least = measure::least_seconds(seconds, [&] {
+    dgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &zero, c.data(), &n);
+  });
+  return 2.0 * n * n * n / least;
+}
+
+Contender::Contender(const DirectSolverKind& kind, const System& system, double s,
+                     const SymmetricMatrix& k)
+    : s_(s),
+      k_(k),
+      b_(Vec::LinSpaced(system.size(), -1, 2)),
+      x_(b_),
+      row_{.unknowns = system.size(), .solver = kind.name} {
+  row_.analysis = seconds_of([&] { solver_ = kind.make(system); });
+  has_solved_ = solver_->factorize(s, k);
+  if (!has_solved_) return;
+  solve();
+  const SymmetricMatrix whole = k.selfadjointView<Eigen::Lower>();
+  const Vec product = system.mass().cwiseProduct(x_) - s * (whole * x_);
+  row_.residual = (product - b_).cwiseAbs().maxCoeff();
+  factorizations_ = calls_in_a_sample([&] { factorize(); });
+  solves_ = calls_in_a_sample([&] { solve(); });
+}
+
+std::vector<double> Contender::sample() {
+  if (!has_solved_) return {};
+  return {time_of(factorizations_, [&] { factorize(); }), time_of(solves_, [&] { solve(); })};
+}
+
+void Contender::take(const std::vector<double>& sample) {
+  if (sample.empty()) return;
+  row_.factorization = std::fmin(row_.factorization, sample[0]);
+  row_.solve = std::fmin(row_.solve, sample[1]);
+}
+
+SolverRow Contender::row(const std::string& scene) const {
+  SolverRow row = row_;
+  row.scene = scene;
+  row.gflops = known(1e-9 * solver_->flops / row.factorization);
+  row.gigabytes_per_second = known(2e-9 * bytes() / row.solve);
+  row.bytes = known(bytes());
+  return row;
 }
 
 }  // namespace qddot::solvers

@@ -18,9 +18,8 @@
 #include <fmt/format.h>
 
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/named_choice.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/solvers/contender.hpp"
+#include "experiments/solvers/direct_solvers.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"
 #include "qddot/scene/invalid_input.hpp"

@@ -1,32 +1,50 @@
-#include "experiments/sweep/merge.hpp"
-
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <omp.h>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/study.hpp"
-#include "experiments/kit/written_table.hpp"
-#include "experiments/sweep/machines.hpp"
+#include "experiments/sweep/actions.hpp"
 #include "experiments/sweep/results.hpp"
-#include "experiments/sweep/scene_folder.hpp"
 #include "experiments/sweep/status.hpp"
+#include "qddot/algebra/effective_mass.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::sweep {
+
+// The time [s] on one machine of each thing that methods count on a scene; zero where the scene has
+// none of it.
+struct WorkCosts {
+  double force = 0, stiffness = 0, factorization = 0, solve = 0;
+};
+// Looked for in the namespace of the type.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkCosts, force, stiffness, factorization, solve)
+
 namespace {
 
+namespace fs = std::filesystem;
+
+// The whole tasks of one scene on one kind of machine, and the folder for their tables.
+struct SceneTasks {
+  std::string out;  // its folder
+  std::vector<Task> tasks{};
+  nlohmann::json machine{};  // of the points
+};
+
 // The scenes' parts in the order of the plan, made of the complete ones among these tasks.
-std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks,
-                                 const std::vector<TaskState>& states, const MachineShare& share,
+std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks, const MachineShare& share,
                                  const std::string& folder) {
   std::vector<SceneTasks> parts;
   std::map<std::string, std::size_t> numbers;
@@ -35,19 +53,142 @@ std::vector<SceneTasks> parts_of(const std::vector<Task>& tasks,
     if (is_new) parts.push_back({.out = folder + "/" + task.folder, .machine = share.machine});
     parts[own->second].tasks.push_back(task);
   };
-  for (const std::size_t i : share.tasks) add(tasks[i]);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (tasks[i].stage == references && states[i].kind == TaskState::whole &&
-        numbers.contains(tasks[i].folder))
-      add(tasks[i]);
+  for (const Task* task : share.tasks) add(*task);
+  for (const Task& task : tasks) {
+    if (task.stage == references && task.state.kind == TaskState::whole &&
+        numbers.contains(task.folder))
+      add(task);
   }
   return parts;
 }
 
-// Calls work(part) on all cores. Returns the causes of failures by the part's folder.
+// The value of an option among a program's words.
+std::string value_of(const std::vector<std::string>& words, const std::string& option) {
+  const auto found = std::ranges::find(words, option);
+  return found == words.end() || found + 1 == words.end() ? "" : *(found + 1);
+}
+
+// Measures the costs on the scene of the task, as its program reduces it, each as the least of many
+// calls: f and K at the start, the numeric factorisation of M - h^2 K, and a solve with it.
+// h = 1 / w_max makes the matrix positive definite if K allows.
+WorkCosts measured_costs(const Task& task) {
+  constexpr double seconds_each = 0.05;
+  SceneChoice choice{.name = value_of(task.arguments, "--scene"), .no_reduce = {}};
+  std::istringstream kept_as_drawn(value_of(task.arguments, "--no-reduce"));
+  for (std::string one; std::getline(kept_as_drawn, one, ',');) choice.no_reduce.push_back(one);
+  const ReducedScene scene(started(load(choice), choice), reductions_of(choice));
+  const System& system = scene.system();
+  const Vec& q = scene.initial().q;
+  Vec f(system.size());
+  WorkCosts costs;
+  costs.force = least_seconds(seconds_each, [&] { system.force(q, f); });
+  if (!system.has_stiffness()) return costs;
+  SymmetricMatrix k = system.stiffness_pattern();
+  costs.stiffness = least_seconds(seconds_each, [&] { system.stiffness(q, k); });
+  const double w = quick_frequency(system, q);
+  const double h_squared = w > 0 ? 1 / (w * w) : 1;
+  EffectiveMass matrix(system);
+  costs.factorization = least_seconds(seconds_each, [&] { matrix.factorize(1, h_squared, k); });
+  Vec x(system.size());
+  costs.solve = least_seconds(seconds_each, [&] { matrix.solve(f, x); });
+  return costs;
+}
+
+// The costs on the scene of the task, on this machine: kept in `folder`/costs.json, or measured and
+// kept there.
+WorkCosts costs_for(const Task& task, const std::string& folder) {
+  const std::string path = folder + "/costs.json";
+  const nlohmann::json key = {{"key", task.key}, {"machine", machine()}};
+  std::ifstream file(path);
+  const auto kept = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (kept.is_object() && kept.value("of", nlohmann::json()) == key)
+    return kept.at("seconds").get<WorkCosts>();
+  const WorkCosts costs = measured_costs(task);
+  nlohmann::json json = provenance({});
+  json["of"] = key;
+  json["seconds"] = costs;
+  write_whole(path, json.dump(1) + "\n");
+  return costs;
+}
+
+// A piece that is a point (see record_of), its times replaced by counts times costs; anything else
+// as it is. What a step does beside forces and solves counts nothing.
+nlohmann::json by_work(nlohmann::json piece, const WorkCosts& costs) {
+  if (!piece.is_object() || !piece.contains("counts") || !piece.contains("time")) return piece;
+  const auto& counts = piece["counts"];
+  const auto times = [&](const char* what) { return counts.at(what).get<double>(); };
+  const double work = times("force_evaluations") * costs.force +
+                      times("stiffness_evaluations") * costs.stiffness +
+                      times("factorizations") * costs.factorization + times("solves") * costs.solve;
+  piece["time"] = piece["time_min"] = work;
+  piece["setup"] = 0;
+  return piece;
+}
+
+// References that were made in the scene's own folder, beside other tables of it.
+void copy_references(const std::string& from, const std::string& to) {
+  std::error_code error;
+  if (fs::equivalent(from, to, error)) return;
+  for (const auto& entry : fs::recursive_directory_iterator(from)) {
+    if (entry.path().filename() != "reference.json") continue;
+    const fs::path copy = to / fs::relative(entry.path(), from);
+    fs::create_directories(copy.parent_path());
+    fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
+  }
+}
+
+// Why that command failed; empty if it did not.
+std::string failure_of(const Command& command) {
+  const ChildEnd end = run_child(command);
+  const bool is_done = end.status == done || end.status == end_not_reached;
+  return is_done && end.signal == 0 ? "" : end.cause();
+}
+
+// Lets the program make its tables from the results of the tasks, as if it had measured all by
+// itself. `is_by_work`: whether times are counts times costs on this machine. Returns why that
+// failed; empty on success. Throws CannotWrite.
+std::string make_tables(const TaskFiles& files, const SceneTasks& part, bool is_by_work) {
+  const Task& first = part.tasks.front();
+  require_folder(part.out);
+  const std::string own = files.folder() + "/" + first.folder;
+  copy_references(own, part.out);
+  nlohmann::json key = first.key;
+  key["machine"] = is_by_work ? machine() : part.machine;
+  if (is_by_work) key["machine"]["times"] = "work";  // for who draws them
+  {
+    const WorkCosts costs = is_by_work ? costs_for(first, own) : WorkCosts();
+    Journal journal(fmt::format("{}/{}.journal", part.out, first.program), key, /*goes_on=*/false);
+    for (const Task& task : part.tasks) {
+      const auto contents = files.contents(task);
+      if (!contents) continue;  // somebody took it away meanwhile
+      for (const auto& [name, piece] : contents->pieces)
+        journal.keep(name, is_by_work ? by_work(piece, costs) : piece);
+    }
+  }
+  return failure_of(command_of(first.program, first.arguments, part.out, {"--kept"}));
+}
+
+// Runs a script of the project's Python on a folder. Empty, or why that failed.
+std::string run_script(const std::string& script, const std::string& folder) {
+  // Debian's own Python, which has matplotlib.
+  return failure_of(
+      {"/usr/bin/python3", "-B", fmt::format("{}/{}", QDDOT_EXPERIMENTS, script), folder});
+}
+
+// Draws the program's picture of the folder and, of work_precision, its page. Empty, or why that
+// failed.
+std::string draw(const SceneTasks& part) {
+  const std::string program = part.tasks.front().program;
+  std::string cause = run_script(fmt::format("{0}/{0}.py", program), part.out);
+  if (cause.empty() && program == "work_precision")
+    cause = run_script("report/report.py", part.out);
+  return cause;
+}
+
+// Calls work(part), which returns why it failed, on all cores. Says what failed and leaves these
+// parts out from then on. Returns whether nothing failed.
 template <class Work>
-std::map<std::string, std::string> on_all(const std::vector<SceneTasks>& parts, const char* what,
-                                          const Work& work) {
+bool on_all(std::vector<SceneTasks>& parts, const char* what, const Work& work) {
   std::vector<std::string> causes(parts.size());
   progress().begin(parts.size());
   side_by_side(parts.size(), [&](std::size_t i) {
@@ -60,7 +201,9 @@ std::map<std::string, std::string> on_all(const std::vector<SceneTasks>& parts, 
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!causes[i].empty()) failures[parts[i].out] = causes[i];
   }
-  return failures;
+  for (const auto& [out, cause] : failures) say(fmt::format("sweep: {}: {}", out, cause));
+  std::erase_if(parts, [&](const SceneTasks& part) { return failures.contains(part.out); });
+  return failures.empty();
 }
 
 // points.csv of all scenes: the rows of theirs, named by their folders.
@@ -80,28 +223,17 @@ void write_points(const std::string& path, const std::vector<SceneTasks>& parts,
   csv.commit(origin);
 }
 
-nlohmann::json origin_of(const std::string& folder, const MachineShare& share, bool by_work) {
-  nlohmann::json origin = provenance({"sweep", "merge", folder});
-  if (!by_work) origin.update(share.machine);
-  origin["times"] = by_work ? "work" : "measured";
-  return origin;
-}
-
 // Writes the tables over all scenes into `folder`.
 void write_overview(const std::string& folder, const std::vector<SceneTasks>& parts,
-                    const nlohmann::json& origin) {
+                    nlohmann::json origin) {
   std::vector<SceneResult> results;
   for (const SceneTasks& part : parts) results.push_back(read_result(part.tasks.front(), part.out));
   const auto accuracies = accuracies_of(parts.front().tasks.front());
   write_points(folder + "/points.csv", parts, origin);
   write_fastest(folder + "/fastest.csv", results, accuracies, origin);
   write_crossovers(folder + "/crossovers.csv", results, accuracies, origin);
-  WholeFile about(folder + "/sweep.json");
-  nlohmann::json words = origin;
-  words["processor"] = origin.at("cpu");
-  about.write(text_of_sidecar(words));
-  about.complete();
-  about.commit();
+  origin["processor"] = origin.at("cpu");
+  write_whole(folder + "/sweep.json", text_of_sidecar(origin));
   print_winners(results, accuracies);
 }
 
@@ -110,29 +242,29 @@ void write_overview(const std::string& folder, const std::vector<SceneTasks>& pa
 bool merge_machine(const TaskFiles& files, const std::string& folder, std::vector<SceneTasks> parts,
                    const MachineShare& share, const Merging& how) {
   if (parts.empty()) return true;
-  const auto say = [](const std::map<std::string, std::string>& failures) {
-    for (const auto& [out, cause] : failures) fmt::print(stderr, "sweep: {}: {}\n", out, cause);
-    return failures.empty();
-  };
   // Costs are measured where nothing runs beside.
   if (how.by_work) omp_set_num_threads(1);
-  const auto failures = on_all(parts, "tables", [&](const SceneTasks& part) {
+  bool is_good = on_all(parts, "tables", [&](const SceneTasks& part) {
     return make_tables(files, part, how.by_work);
   });
-  bool is_good = say(failures);
-  std::erase_if(parts, [&](const SceneTasks& part) { return failures.contains(part.out); });
   if (parts.empty()) return false;
   const bool has_points = parts.front().tasks.front().program == "work_precision";
-  if (has_points) write_overview(folder, parts, origin_of(folder, share, how.by_work));
+  if (has_points) {
+    nlohmann::json origin = provenance({"sweep", "merge", folder});
+    if (!how.by_work) origin.update(share.machine);
+    origin["times"] = how.by_work ? "work" : "measured";
+    write_overview(folder, parts, origin);
+  }
   if (!how.has_pictures) return is_good;
   omp_set_num_threads(omp_get_num_procs());
-  set_environment_of_scripts();
-  is_good = say(on_all(parts, "pictures", draw)) && is_good;
+  const std::string experiments = QDDOT_EXPERIMENTS;
+  ::setenv("PYTHONPATH", (experiments + "/plot:" + experiments + "/report").c_str(), 1);
+  ::setenv("LC_ALL", "C", 1);
+  is_good &= on_all(parts, "pictures", draw);
   if (!has_points) return is_good;
   const std::string cause = run_script("sweep/sweep.py", folder);
-  return say(cause.empty() ? std::map<std::string, std::string>()
-                           : std::map<std::string, std::string>{{folder, cause}}) &&
-         is_good;
+  if (!cause.empty()) say(fmt::format("sweep: {}: {}", folder, cause));
+  return is_good && cause.empty();
 }
 
 }  // namespace
@@ -145,21 +277,14 @@ int merge(const std::string& folder, const Merging& how) {
                                    tasks.front().program));
   }
   const TaskFiles files(folder, /*makes_folders=*/true);
-  std::vector<TaskState> states;
-  for (const Task& task : tasks) states.push_back(files.state(task));
-  std::vector<MachineShare> machines = machines_of(tasks, states);
-  if (machines.size() > 1 && !how.per_machine && !how.by_work) {
+  for (Task& task : tasks) task.state = files.state(task);
+  // Times that are computed are measured on none of them.
+  const std::vector<MachineShare> machines = machines_of(tasks, how.by_work);
+  if (machines.size() > 1 && !how.per_machine) {
     throw InvalidInput(
         fmt::format("{}: its seconds were measured on unlike machines, {}, and do not compare; "
                     "allowed are --per-machine and --by work",
                     folder, in_words(machines)));
-  }
-  if (how.by_work && machines.size() > 1) {  // times are measured on none of them
-    for (std::size_t k = 1; k < machines.size(); ++k)
-      machines[0].tasks.insert(machines[0].tasks.end(), machines[k].tasks.begin(),
-                               machines[k].tasks.end());
-    machines.resize(1);
-    std::ranges::sort(machines[0].tasks);
   }
   bool is_good = true;
   for (std::size_t k = 0; k < machines.size(); ++k) {
@@ -168,11 +293,9 @@ int merge(const std::string& folder, const Merging& how) {
       out = fmt::format("{}/machines/{}", folder, k + 1);
       fmt::print("{}: {}\n", out, in_words({machines[k]}));
     }
-    is_good =
-        merge_machine(files, out, parts_of(tasks, states, machines[k], out), machines[k], how) &&
-        is_good;
+    is_good &= merge_machine(files, out, parts_of(tasks, machines[k], out), machines[k], how);
   }
-  const bool is_complete = report_missing(folder, tasks, states);
+  const bool is_complete = report_missing(folder, tasks);
   return is_good && is_complete ? done : end_not_reached;
 }
 

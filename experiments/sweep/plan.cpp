@@ -1,18 +1,13 @@
-#include "experiments/sweep/plan.hpp"
-
 #include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
-#include "experiments/kit/study.hpp"
-#include "experiments/kit/whole_file.hpp"
+#include "experiments/sweep/actions.hpp"
 #include "experiments/sweep/study_file.hpp"
-#include "experiments/sweep/task_files.hpp"
+#include "experiments/sweep/task.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -31,10 +26,7 @@ std::string scene_word(const StudyScene& scene, const std::string& study_path,
     // Its name holds its content, so that no earlier plan's is replaced.
     std::string path = fmt::format("{}/scenes/{}-{}.toml", folder, scene.label,
                                    text_hash(scene.text).substr(0, 8));
-    WholeFile file(path);
-    file.write(signed_text(scene.text));
-    file.complete();
-    file.commit();
+    write_whole(path, signed_text(scene.text));
     return path;
   }
   if (scene.source.empty() || find_generator(scene.source)) return scene.source;
@@ -70,17 +62,12 @@ struct Listed {
   std::string refusal{};
 };
 
-Listed listed(const StudyFile& study, std::vector<std::string> arguments) {
-  Command command = arguments;
-  command.insert(command.begin(), program_path(study.program));
-  for (const char* word : {"--out", ".", "--list-shares", "--progress", "none"})
-    command.emplace_back(word);
-  const ChildEnd end = run_child(command);
-  measure::stop_if_interrupted();
-  Listed all{.arguments = std::move(arguments)};
-  all.found = nlohmann::json::parse(end.out, nullptr, /*allow_exceptions=*/false);
-  if (end.status != done || !all.found.is_object()) all.refusal = end.cause();
-  return all;
+Listed listed(const StudyFile& study, const std::vector<std::string>& arguments) {
+  const ChildEnd end = run_child(command_of(study.program, arguments, ".", {"--list-shares"}));
+  stop_if_interrupted();
+  const auto found = nlohmann::json::parse(end.out, nullptr, /*allow_exceptions=*/false);
+  const bool is_good = end.status == done && found.is_object();
+  return {arguments, found, is_good ? "" : end.cause()};
 }
 
 // The shares of a scene, without those of methods that cannot run it.

@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/measured_points.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/chart.hpp"
@@ -22,20 +22,18 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-using Ranking = std::vector<const Point*>;  // the fastest point of each method, the fastest first
-
-Ranking ranking(const SceneResult& result, double accuracy) {
-  return fastest_at_each_accuracy(result.points, result.reference, {accuracy}).front().ranked;
+FrontRow row_of(const SceneResult& result, double accuracy) {
+  return fastest_at_each_accuracy(result.points, result.reference, {accuracy}).front();
 }
 
 // How many times as long the next method takes; no number where there is none.
-double margin(const Ranking& ranked) {
-  return ranked.size() > 1 ? ranked[1]->time / ranked[0]->time : none;
+double margin(const FrontRow& row) {
+  return row.runner_up() ? row.runner_up()->time / row.fastest->time : none;
 }
 
-double time_of(const Ranking& ranked, const Method* method) {
-  const auto found = std::ranges::find(ranked, method, &Point::method);
-  return found == ranked.end() ? none : (*found)->time;
+double time_of(const FrontRow& row, const Method* method) {
+  const auto found = std::ranges::find(row.ranked, method, &Point::method);
+  return found == row.ranked.end() ? none : (*found)->time;
 }
 
 // Two neighbouring values of what varies, all else alike.
@@ -87,9 +85,9 @@ std::vector<Crossover> crossovers(const std::vector<SceneResult>& results,
   std::vector<Crossover> all;
   for (const Neighbours& pair : neighbours(results)) {
     for (const double accuracy : accuracies) {
-      const Ranking low = ranking(*pair.low, accuracy), high = ranking(*pair.high, accuracy);
-      if (low.empty() || high.empty() || low.front()->method == high.front()->method) continue;
-      const Method *first = low.front()->method, *second = high.front()->method;
+      const FrontRow low = row_of(*pair.low, accuracy), high = row_of(*pair.high, accuracy);
+      if (!low.fastest || !high.fastest || low.fastest->method == high.fastest->method) continue;
+      const Method *first = low.fastest->method, *second = high.fastest->method;
       all.push_back({.pair = pair,
                      .accuracy = accuracy,
                      .low = first,
@@ -140,15 +138,15 @@ void write_fastest(const std::string& path, const std::vector<SceneResult>& resu
   for (const SceneResult& result : results) {
     const char* judge = name(judge_of(result.reference));
     for (const double accuracy : accuracies) {
-      const Ranking ranked = ranking(result, accuracy);
-      if (ranked.empty()) {
+      const FrontRow row = row_of(result, accuracy);
+      if (!row.fastest) {
         csv.row(result.label, result.until, accuracy, "", "", "", "", "", "", "", judge);
         continue;
       }
-      const Point& best = *ranked.front();
+      const Point& best = *row.fastest;
       csv.row(result.label, result.until, accuracy, best.method->name, knob_name(best.method->knob),
               best.value, judged(best, result.reference).error, best.time,
-              ranked.size() > 1 ? ranked[1]->method->name : "", margin(ranked), judge);
+              row.runner_up() ? row.runner_up()->method->name : "", margin(row), judge);
     }
   }
   csv.commit(origin);
@@ -170,11 +168,11 @@ void print_winners(const std::vector<SceneResult>& results, const std::vector<do
     std::map<std::string, std::vector<double>> margins;  // by the fastest method
     std::size_t unreached = 0;
     for (const SceneResult& result : results) {
-      const Ranking ranked = ranking(result, accuracy);
-      if (ranked.empty()) {
+      const FrontRow row = row_of(result, accuracy);
+      if (!row.fastest) {
         ++unreached;
       } else {
-        margins[ranked.front()->method->name].push_back(margin(ranked));
+        margins[row.fastest->method->name].push_back(margin(row));
       }
     }
     std::vector<std::pair<std::string, std::vector<double>>> order(margins.begin(), margins.end());

@@ -1,5 +1,3 @@
-#include "experiments/sweep/run.hpp"
-
 #include <charconv>
 #include <cstdlib>
 #include <map>
@@ -8,10 +6,9 @@
 
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/program.hpp"
-#include "experiments/kit/progress.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "experiments/kit/study.hpp"
-#include "experiments/sweep/task_files.hpp"
+#include "experiments/sweep/actions.hpp"
+#include "experiments/sweep/task.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -42,7 +39,9 @@ void say_of(const Task& task, const std::string& what) {
 // Measures one, or says and keeps why it failed.
 bool measure_task(const TaskFiles& files, const Task& task, bool replaces) {
   const std::string journal = files.begin(task);
-  const ChildEnd end = run_child(command_of(task, files.folder(), journal));
+  const ChildEnd end =
+      run_child(command_of(task.program, task.arguments, files.folder() + "/" + task.folder,
+                           {"--share", task.share, "--journal", journal}));
   if (files.finish(task, journal, replaces)) return true;
   stop_if_interrupted();
   say_of(task, end.cause());

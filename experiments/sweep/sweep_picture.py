@@ -1,6 +1,7 @@
 """The picture of a sweep: the table of the fastest methods, where they change, and what a reader
 must know of the numbers."""
 
+import re
 from dataclasses import dataclass
 
 from matplotlib import pyplot
@@ -8,16 +9,17 @@ from matplotlib import pyplot
 from fastest_table import (
     KEY_LINE,
     Cells,
+    accuracy_in_words,
     draw_accuracies,
     draw_cells,
     draw_heads,
     draw_key,
     sundials_in_words,
 )
+from names import shown
 from scene_row import counted
-from scene_title import ONE_LINE_SIZES, draw_title
 from sheet import Sheet
-from style import COOL, FAINT, seconds
+from style import COOL, FAINT, exact, number, seconds
 
 MARGIN = 0.15
 ROW, GAP = 0.5, 0.06
@@ -31,6 +33,12 @@ MOST_WITH_ONE_HEAD = 20
 LEAST_NAMES, MOST_NAMES = 1.5, 2.9
 FACT_SIZE, FOOT_SIZE, SUBTITLE_SIZE, CHANGE_SIZE = 8, 8.5, 10.5, 9
 LINE, CHANGE_LINE, INDENT = 0.19, 0.2, 0.16
+# Sentences on changes, at most.
+MOST_CHANGES = 8
+# The sizes of a scene's name, and after which letters it may be broken.
+ONE_LINE_SIZES, TWO_LINES_SIZES = (10.5, 10, 9.5, 9, 8.5), (8.5, 8, 7.5)
+TITLE_STYLE = {"weight": "bold", "va": "center", "linespacing": 1.0}
+ENDS = "_-., =+"
 
 
 @dataclass(frozen=True)
@@ -51,6 +59,102 @@ class Study:
     def judges(self):
         """What the errors of the rows are of."""
         return {"energy" if row.is_by_energy else "position" for row in self.rows}
+
+
+def value_in_words(along, value):
+    """A value of what is varied, with its unit where that is known."""
+    if along == "until" and value > 0:
+        return seconds(value)
+    if abs(value) >= 1e5:
+        return number(value)
+    return f"{value:,.0f}" if value == round(value) else exact(value)
+
+
+def common_beginning(low, high, along):
+    """What the names of two scenes begin with, in whole words and but for what is varied: "chain"
+    of chain_nodes_300 and chain_nodes_1000."""
+    words = []
+    for left, right in zip(re.split(r"[_\s=,-]+", low), re.split(r"[_\s=,-]+", high)):
+        if left != right:
+            break
+        words.append(left)
+    beginning = "_".join(words)
+    if beginning != along:
+        beginning = beginning.removesuffix(f"_{along}")
+    return beginning or f"{low} to {high}"
+
+
+def change_in_words(crossover):
+    """The change of one row, but for the accuracy."""
+    first, then = map(shown, crossover.methods)
+    scenes = shown(common_beginning(*crossover.scenes, crossover.along))
+    along = crossover.along
+    if crossover.crossing is None:
+        low, high = (value_in_words(along, value) for value in (crossover.low, crossover.high))
+        change = f"{first} up to {low}, {then} from {high} on"
+    else:
+        crossing = value_in_words(along, float(f"{crossover.crossing:.2g}"))
+        change = f"{first} up to some {crossing}, then {then}"
+    return f"{scenes}, {shown(along)}: {change}"
+
+
+def listed(words):
+    """Words with commas and an "and" between them."""
+    return " and ".join([*([", ".join(words[:-1])] if words[1:] else []), *words[-1:]])
+
+
+def sentences(crossovers):
+    """A sentence for each change, in the order of the file, at most MOST_CHANGES of them; then one that
+    says how many rows have none. Rows that differ by their accuracy alone share one."""
+    changes = {}
+    for crossover in crossovers:
+        changes.setdefault(change_in_words(crossover), []).append(crossover.accuracy)
+    said = [
+        f"{change}, at {listed([accuracy_in_words(value) for value in accuracies])}"
+        for change, accuracies in list(changes.items())[:MOST_CHANGES]
+    ]
+    rest = sum(len(accuracies) for accuracies in list(changes.values())[MOST_CHANGES:])
+    return [*said, *([f"and {rest} more in crossovers.csv"] if rest else [])]
+
+
+def in_two(name):
+    """A name as two lines, broken at the place nearest to its middle that is good, else there."""
+    middle = len(name) / 2
+    places = [i + 1 for i, letter in enumerate(name[:-1]) if letter in ENDS]
+    # A line that is much the longer one is of no use.
+    good = [place for place in places if abs(place - middle) <= len(name) / 6]
+    place = min(good, key=lambda place: abs(place - middle)) if good else round(middle)
+    return name[:place].rstrip(" "), name[place:].lstrip(" ")
+
+
+def cut(name, length):
+    """A name of at most so many letters; those left out are of its middle."""
+    if len(name) <= length:
+        return name
+    tail = (length - 1) // 2
+    return f"{name[: length - 1 - tail]}…{name[len(name) - tail :]}"
+
+
+def attempts(name):
+    """The ways to write a name, the best first: (size, lines)."""
+    for size in ONE_LINE_SIZES:
+        yield size, (name,)
+    for size in TWO_LINES_SIZES:
+        yield size, in_two(name)
+    for length in range(len(name) - 1, 1, -1):
+        yield TWO_LINES_SIZES[-1], in_two(cut(name, length))
+
+
+def draw_title(sheet, left, height, room, name):
+    """Draws the name of a scene in one line or two, centred at a height; returns how many lines."""
+    text = sheet.text(left, height, "", **TITLE_STYLE)
+    lines = ()
+    for size, lines in attempts(name):
+        text.set_text("\n".join(map(shown, lines)))
+        text.set_size(size)
+        if sheet.text_width(text) <= room:
+            break
+    return len(lines)
 
 
 def facts(row):

@@ -23,16 +23,12 @@
 
 #include <fmt/format.h>
 
-#include "experiments/kit/accuracy_choice.hpp"
-#include "experiments/kit/method_options.hpp"
-#include "experiments/kit/named_choice.hpp"
-#include "experiments/kit/point_record.hpp"
-#include "experiments/kit/point_table.hpp"
+#include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/reference_file.hpp"
 #include "experiments/record/chart_record.hpp"
-#include "experiments/work_precision/chart_file.hpp"
-#include "experiments/work_precision/front_table.hpp"
+#include "experiments/work_precision/chart_files.hpp"
 #include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
 
@@ -86,14 +82,18 @@ int main(int argc, char** argv) {
   auto usual = p.effort();
   auto options = p.method_options();
   p.out("the folder for points.csv, front.csv, chart.json and reference.json");
-  p.instead("--judge",
-            "a folder with points.csv, and front.csv and reference.json if they are there: "
-            "makes its chart.json anew and measures nothing",
-            judge);
+  auto judged_folder =
+      p.instead("--judge",
+                "a folder with points.csv, and front.csv and reference.json if they are there: "
+                "makes its chart.json anew and measures nothing");
   auto& points_csv = p.table("points.csv", point_columns());
   auto& front_csv = p.table("front.csv", front_columns);
   auto& chart_json = p.file("chart.json", record::chart_beginning);
   return p.run(argc, argv, [&] {
+    if (judged_folder.is_given()) {
+      judge(judged_folder);
+      return static_cast<int>(done);
+    }
     require_options(p, options);
     const std::vector<double> asked = sorted_accuracies(accuracies);
     const Subject subject = subject_of(scene, until);

@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "integrators/sundials/support.hpp"
 #include "qddot/model/vector_updates.hpp"

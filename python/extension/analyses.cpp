@@ -65,7 +65,7 @@ py::dict modes(const Model& model, Index count) {
 
 py::dict linear_step(const std::string& name, double h_omega, const py::dict& given) {
   const measure::LinearStep step = measure::linear_step(method(name), h_omega, options_of(given));
-  return py::dict(arg("h_omega") = step.h_omega, arg("roots") = step.roots,
+  return py::dict(arg("h_omega") = step.h_omega, arg("roots") = py::tuple(py::cast(step.roots)),
                   arg("spectral_radius") = step.spectral_radius(),
                   arg("damping_ratio") = step.damping_ratio(),
                   arg("period_error") = step.period_error());
@@ -84,16 +84,12 @@ void add_analyses(py::module_& module) {
       throw std::invalid_argument(name +
                                   " chooses its steps by itself, so that it has no limit of "
                                   "h w; allowed are methods whose knob is step_size");
-    double measured = 0;
-    outside(1, [&](const std::stop_token&) { measured = measure::measured_limit(chosen); });
+    const double measured = made_outside([&] { return measure::measured_limit(chosen); });
     return py::make_tuple(linear_limit(chosen), measured);
   });
   module.def("largest_frequency", [](const Model& model) {
-    double omega = 0;
-    outside(1, [&](const std::stop_token&) {
-      omega = largest_frequency(model.reduced->system(), model.reduced->initial().q);
-    });
-    return omega;
+    return made_outside(
+        [&] { return largest_frequency(model.reduced->system(), model.reduced->initial().q); });
   });
 }
 

@@ -49,7 +49,6 @@ void add_models(py::module_& module);
 void add_runs(py::module_& module);
 void add_analyses(py::module_& module);
 void add_measures(py::module_& module);
-void add_exchange(py::module_& module);
 
 // The sentence with the programs' options as Python spells them: step_size for --step-size, and
 // keep for --no-reduce.

@@ -4,6 +4,9 @@
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "qddot/measure/advice/advise.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/exchange/energy_exchange.hpp"
+#include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/work_precision.hpp"
@@ -14,11 +17,9 @@ namespace {
 using py::arg;
 
 HeldReference reference_of(const Model& model, double until, double seconds) {
-  HeldReference held{.model = model, .reference = {}};
-  outside(1, [&](const std::stop_token&) {
-    held.reference = make_reference(*model.reduced, until, seconds, model.start.get());
-  });
-  return held;
+  return {model, made_outside([&] {
+            return make_reference(*model.reduced, until, seconds, model.start.get());
+          })};
 }
 
 // The numbers of a reference that pictures and readers need.
@@ -53,11 +54,6 @@ py::tuple errors_of(const HeldReference& held, const Doubles& q, const Doubles& 
   const ReducedScene& scene = *held.model.reduced;
   const auto exact = scene.expand(held.reference.end);
   const int d = scene.dimension();
-  const auto wanted = static_cast<py::ssize_t>(exact.size()) * d;
-  if (q.size() != wanted || v.size() != wanted)
-    throw std::invalid_argument("errors: " + std::to_string(q.size()) + " positions and " +
-                                std::to_string(v.size()) + " velocities; there are " +
-                                std::to_string(wanted) + " of each");
   std::vector<Node> nodes = exact;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (int c = 0; c < d; ++c) {
@@ -88,9 +84,8 @@ py::dict record_with_bounds(const Point& point, const Reference& reference) {
 // The points of all methods, and what the chart says of them as JSON (see chart_record.hpp).
 // `report`: None, or a callable that is called with each point.
 py::dict work_precision_of(const HeldReference& held, const Names& names, double seconds,
-                           int repeats, const py::dict& given, const py::object& report) {
-  const Effort effort{
-      .seconds = seconds, .repeats = repeats, .options = options_of(given), .watch = nullptr};
+                           int repeats, const py::object& report) {
+  Effort effort{.seconds = seconds, .repeats = repeats};
   const auto see = [&](const Point& point) {
     if (report.is_none()) return stop_if_interrupted();
     try {
@@ -106,13 +101,12 @@ py::dict work_precision_of(const HeldReference& held, const Names& names, double
   std::string chart;
   outside(1, [&](const std::stop_token&) {
     std::optional<Watch> watch;
-    Effort watched = effort;
     if (held.model.start) {  // only springs have momenta
       watch.emplace(*held.model.start, *held.model.reduced, held.reference.end.t, held.reference);
-      watched.watch = &*watch;
+      effort.watch = &*watch;
     }
     measured =
-        work_precision(*held.model.reduced, held.reference, methods_named(names), watched, see);
+        work_precision(*held.model.reduced, held.reference, methods_named(names), effort, see);
     chart = record::chart_record(measured.chart(*held.model.reduced), "null");
   });
   py::list points;
@@ -130,9 +124,8 @@ py::object candidate(const std::optional<Candidate>& c) {
 py::dict advise_on(const Model& model, double until, const std::vector<double>& accuracies,
                    const std::string& of) {
   const AccuracyOf what = accuracy_of(of);
-  Advices all;
-  outside(1,
-          [&](const std::stop_token&) { all = advise(*model.reduced, until, accuracies, what); });
+  for (const double accuracy : accuracies) require_accuracy(accuracy, "accuracy");
+  const Advices all = made_outside([&] { return advise(*model.reduced, until, accuracies, what); });
   py::list each;
   for (const Advice& advice : all.for_each) {
     each.append(py::dict(arg("accuracy") = advice.accuracy, arg("why") = in_python(advice.why),
@@ -150,22 +143,14 @@ py::dict advise_on(const Model& model, double until, const std::vector<double>& 
                   arg("runs") = all.runs, arg("seconds") = all.seconds);
 }
 
-py::dict trend_record(const Trend& t, const TrendScales& scales) {
-  const auto interval = [](const Interval& i) { return py::make_tuple(i.value, i.low, i.high); };
-  return py::dict(arg("verdict") = verdict_name(t.verdict),
-                  arg("words") = trend_in_words(t, scales), arg("drift") = interval(t.drift),
-                  arg("rate") = interval(t.rate), arg("oscillation") = t.oscillation,
-                  arg("walk") = t.walk, arg("needed") = t.needed);
-}
-
 // The trend of a scene's energy in a run of a method.
 py::dict energy_trend_of(const Model& model, const std::string& name, const py::dict& given,
                          double until, double seconds) {
-  DriftRun run;
   const Options options = options_of(given);
-  outside(1, [&](const std::stop_token&) {
-    run = energy_trend(*model.start, method(name), options, until, seconds);
+  const DriftRun run = made_outside([&] {
+    DriftRun made = energy_trend(*model.start, method(name), options, until, seconds);
     stop_if_interrupted();
+    return made;
   });
   std::vector<double> t, energy, error;
   for (const DriftPoint& point : run.path) {
@@ -173,10 +158,13 @@ py::dict energy_trend_of(const Model& model, const std::string& name, const py::
     energy.push_back(point.energy);
     error.push_back(point.error);
   }
+  const Interval& drift = run.energy.drift;
   return py::dict(
-      arg("summary") = record_of(run.summary), arg("seconds") = run.seconds, arg("t") = array_of(t),
-      arg("energy") = array_of(energy), arg("error") = array_of(error),
-      arg("trend") = trend_record(run.energy, run.scales),
+      arg("outcome") = qddot::name(run.summary.outcome), arg("t_reached") = run.summary.t_reached,
+      arg("seconds") = run.seconds, arg("t") = array_of(t), arg("energy") = array_of(energy),
+      arg("error") = array_of(error),
+      arg("drift") = py::make_tuple(drift.value, drift.low, drift.high),
+      arg("oscillation") = run.energy.oscillation,
       arg("verdict") = verdict_name(verdict_at(run, until)), arg("words") = verdict(run, until));
 }
 
@@ -209,6 +197,84 @@ py::dict record_of(const Point& p) {
   return record;
 }
 
+namespace {
+
+py::array_t<double> energies_of(const EnergyCourse& course) {
+  const auto times = static_cast<py::ssize_t>(course.times.size());
+  const Index springs = course.energies.empty() ? 0 : course.energies.front().size();
+  py::array_t<double> array({times, static_cast<py::ssize_t>(springs)});
+  double* to = array.mutable_data();
+  for (const Vec& energies : course.energies)
+    to = std::copy(energies.data(), energies.data() + springs, to);
+  return array;
+}
+
+// A run compared with the reference `exact`; `own` is the reference compared with itself.
+py::dict run_record(const std::string& method, double h, double h_omega, const ExchangeRun& run,
+                    const EnergyCourse& exact, const ExchangeComparison& own, double window) {
+  py::dict record(arg("method") = method, arg("step_size") = h, arg("h_omega") = h_omega,
+                  arg("outcome") = name(run.summary.outcome), arg("t") = array_of(run.course.times),
+                  arg("energies") = energies_of(run.course),
+                  arg("sum_deviation") = run.sum_deviation, arg("energy_error") = run.energy_error,
+                  arg("exchange_error") = py::none(), arg("tempo") = py::none(),
+                  arg("misfit") = py::none());
+  if (run.summary.outcome != Outcome::reached_end) {
+    record["verdict"] = verdict_on(run.summary);
+    return record;
+  }
+  const ExchangeComparison c = compare(run.course, exact, window);
+  record["exchange_error"] = c.distance;
+  record["tempo"] = c.tempo;
+  record["misfit"] = c.misfit;
+  record["verdict"] = verdict_on(c, own);
+  return record;
+}
+
+py::dict exchange(const Model& model, const Names& names, const std::vector<double>& h_omegas,
+                  double until, std::optional<double> every) {
+  struct Made {
+    const Method* method;
+    double h_omega;
+    ExchangeRun run;
+  };
+  std::optional<Excitation> excitation;
+  CertifiedCourse reference;
+  std::vector<Made> runs;
+  for (const std::string& name : names) {
+    if (method(name).knob != Knob::step_size)
+      throw std::invalid_argument(name + " chooses its steps by itself, so that it has no h w");
+  }
+  outside(1, [&](const std::stop_token&) {
+    excitation.emplace(
+        excitation_of(*model.start, ReducedScene(*model.start), until, model.start->name));
+    if (every) excitation->every = *every;
+    reference = certified_course(*excitation);
+    for (const std::string& name : names) {
+      for (const double h_omega : h_omegas) {
+        stop_if_interrupted();
+        const double h = h_omega / excitation->omega;
+        runs.push_back({&method(name), h_omega,
+                        exchange_run(*excitation, method(name), h,
+                                     multiples_near(excitation->every, h, until))});
+      }
+    }
+    stop_if_interrupted();
+  });
+  const EnergyCourse& exact = reference.run.course;
+  const ExchangeComparison own = compare(exact, exact, excitation->window);
+  py::list records;
+  for (const Made& made : runs) {
+    records.append(run_record(made.method->name, made.h_omega / excitation->omega, made.h_omega,
+                              made.run, exact, own, excitation->window));
+  }
+  return py::dict(arg("omega") = excitation->omega, arg("certified") = reference.certified,
+                  arg("reference") = run_record("reference", reference.h, CertifiedCourse::h_omega,
+                                                reference.run, exact, own, excitation->window),
+                  arg("runs") = records);
+}
+
+}  // namespace
+
 void add_measures(py::module_& module) {
   py::class_<HeldReference> reference(module, "Reference");
   reference.def("record", [](const HeldReference& held) { return reference_record(held); });
@@ -218,6 +284,7 @@ void add_measures(py::module_& module) {
   module.def("work_precision", &work_precision_of);
   module.def("advise", &advise_on);
   module.def("energy_trend", &energy_trend_of);
+  module.def("exchange", &exchange);
 }
 
 }  // namespace qddot::python

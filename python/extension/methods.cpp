@@ -8,23 +8,23 @@ namespace qddot::python {
 namespace {
 
 template <class Kind, std::size_t count>
-Names names_in(const SetOf<Kind>& set, const std::array<const char*, count>& names) {
-  Names held;
+py::tuple names_in(const SetOf<Kind>& set, const std::array<const char*, count>& names) {
+  py::list held;
   for (std::size_t i = 0; i < count; ++i) {
-    if (set.has(static_cast<Kind>(i))) held.emplace_back(names[i]);
+    if (set.has(static_cast<Kind>(i))) held.append(names[i]);
   }
-  return held;
+  return py::tuple(held);
 }
 
 // These have the order of the enumerations in method.hpp.
-constexpr std::array traits = {"implicit",        "linearly_implicit", "symplectic",
-                               "cancels_torques", "accepts_massless",  "interpolates",
-                               "bounds_steps"};
-constexpr std::array needs = {"stiffness", "constant_stiffness", "split_forces",
-                              "discrete_gradient", "laplacian"};
-constexpr std::array options = {"max_order",       "stability_detection", "iterations",
-                                "solve_tolerance", "spectral_radius",     "solver",
-                                "compensated"};
+constexpr std::array trait_names = {"implicit",        "linearly_implicit", "symplectic",
+                                    "cancels_torques", "accepts_massless",  "interpolates",
+                                    "bounds_steps"};
+constexpr std::array need_names = {"stiffness", "constant_stiffness", "split_forces",
+                                   "discrete_gradient", "laplacian"};
+constexpr std::array option_names = {"max_order",       "stability_detection", "iterations",
+                                     "solve_tolerance", "spectral_radius",     "solver",
+                                     "compensated"};
 
 py::dict method_record(const Method& method) {
   using py::arg;
@@ -32,8 +32,9 @@ py::dict method_record(const Method& method) {
       arg("name") = method.name, arg("summary") = method.summary, arg("source") = method.source,
       arg("order") = method.order, arg("family") = family_name(method.family),
       arg("knob") = knob_name(method.knob), arg("stability_limit") = method.stability_limit,
-      arg("traits") = names_in(method.traits, traits), arg("needs") = names_in(method.needs, needs),
-      arg("takes") = names_in(method.takes, options), arg("stock_of") = method.stock_of);
+      arg("traits") = names_in(method.traits, trait_names),
+      arg("needs") = names_in(method.needs, need_names),
+      arg("takes") = names_in(method.takes, option_names), arg("stock_of") = method.stock_of);
 }
 
 py::list records() {
@@ -68,12 +69,6 @@ Options options_of(const py::dict& given) {
   return options;
 }
 
-void add_methods(py::module_& module) {
-  module.def("methods", &records);
-  module.def("advice", [](const std::string& outcome) {
-    if (const auto found = find_outcome(outcome)) return advice(*found);
-    throw std::invalid_argument(outcome + " is no outcome");
-  });
-}
+void add_methods(py::module_& module) { module.def("methods", &records); }
 
 }  // namespace qddot::python

@@ -1,5 +1,8 @@
 // The private module _qddot for the typed layer in python/qddot. It takes and returns plain data
 // and NumPy arrays, and holds scenes, models and references.
+#include <algorithm>
+#include <regex>
+
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "qddot/measure/reference/reference.hpp"
@@ -25,6 +28,21 @@ void add_exception(py::module_& module, const char* name, PyObject* base, const 
 }
 
 }  // namespace
+
+std::string in_python(const std::string& sentence) {
+  static const std::regex option("--(no-reduce (?=dimension|massless)|[a-z][a-z-]*[a-z])");
+  std::string words;
+  auto rest = sentence.begin();
+  for (std::sregex_iterator at(sentence.begin(), sentence.end(), option), end; at != end; ++at) {
+    std::string name = (*at)[1];
+    std::ranges::replace(name, '-', '_');
+    words.append(rest, (*at)[0].first);
+    words += name == "no_reduce" ? "keep" : name == "no_reduce " ? "keep=" : name;
+    rest = (*at)[0].second;
+  }
+  return words.append(rest, sentence.end());
+}
+
 }  // namespace qddot::python
 
 PYBIND11_MODULE(_qddot, module) {
@@ -45,5 +63,4 @@ PYBIND11_MODULE(_qddot, module) {
   python::add_runs(module);
   python::add_analyses(module);
   python::add_measures(module);
-  python::add_exchange(module);
 }

@@ -2,24 +2,13 @@
 
 #include <exception>
 #include <functional>
+#include <optional>
 #include <pybind11/pybind11.h>
 #include <stop_token>
 
 #include "qddot/measure/motion/interruption.hpp"
 
 namespace qddot::python {
-
-// While this lives, forces and factorisations of this thread use `count` threads.
-class Threads {
- public:
-  explicit Threads(int count);
-  ~Threads();
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-
- private:
-  int before_;
-};
 
 // Lets forked processes start again; must be called once.
 void prepare_for_forks();
@@ -39,5 +28,13 @@ void inside_python(const std::function<void()>& work);
 // Ctrl-C ends it (see OwnInterruption) and raises KeyboardInterrupt. Exceptions of callables are
 // raised too.
 void outside(int threads, const std::function<void(std::stop_token)>& work);
+
+// The result of work that is done so, on one thread.
+template <class Work>
+auto made_outside(const Work& work) {
+  std::optional<decltype(work())> made;
+  outside(1, [&](const std::stop_token&) { made.emplace(work()); });
+  return std::move(*made);
+}
 
 }  // namespace qddot::python

@@ -104,8 +104,7 @@ py::dict answer(const Model& model, double until, double accuracy, const std::st
   py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
                   arg("error_estimate_kind") = name(found.error_estimate_kind),
-                  arg("advised_by") = name(found.advised_by), arg("horizon") = found.horizon,
-                  arg("lyapunov") = found.lyapunov, arg("runs") = found.runs,
+                  arg("horizon") = found.horizon, arg("runs") = found.runs,
                   arg("seconds") = found.seconds.run, arg("seconds_in_all") = found.seconds.total(),
                   arg("summary") = record_of(found.summary));
   if (!found.method) return record;

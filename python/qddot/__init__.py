@@ -23,17 +23,21 @@ from qddot._analysis import (
     modes,
     stability_limit,
 )
-from qddot._convergence import Convergence, convergence
-from qddot._exchange import Exchange, ExchangeRun, exchange
-from qddot._explanation import Explanation
 from qddot._methods import Method, method, methods
 from qddot._qddot import InvalidInput, NoReference, __version__
 from qddot._reference import Errors, Reference, reference
-from qddot._scene import Scene
-from qddot._solution import Counts, Energy, RunFailed, Solution, State
-from qddot._solve import solve
+from qddot._scene import Explanation, Scene
+from qddot._solve import Counts, Energy, RunFailed, Solution, State, solve
+from qddot._studies import (
+    Convergence,
+    EnergyTrend,
+    Exchange,
+    ExchangeRun,
+    convergence,
+    energy_trend,
+    exchange,
+)
 from qddot._system import System
-from qddot._trend import EnergyTrend, energy_trend
 from qddot._work_precision import Point, WorkPrecision, work_precision
 
 __all__ = [

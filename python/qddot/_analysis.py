@@ -126,9 +126,7 @@ def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
     """The effect of a step of the method on a vibration at h w; options are those of solve()."""
     chosen = method_named(method)
     given = options_for(chosen, {**options, chosen.knob: 1.0})
-    record = _qddot.linear_step(method, number(h_omega, "h_omega"), given)
-    record["roots"] = tuple(record["roots"])
-    return LinearStep(**record)
+    return LinearStep(**_qddot.linear_step(method, number(h_omega, "h_omega"), given))
 
 
 def stability_limit(

@@ -38,12 +38,7 @@ class Method:
 
 @lru_cache(maxsize=None)
 def _all() -> dict[str, Method]:
-    tuples = ("traits", "needs", "takes")
-    records = (
-        {key: tuple(value) if key in tuples else value for key, value in record.items()}
-        for record in _qddot.methods()
-    )
-    return {record["name"]: Method(**record) for record in records}
+    return {record["name"]: Method(**record) for record in _qddot.methods()}
 
 
 def methods() -> list[Method]:

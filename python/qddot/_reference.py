@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from qddot import _qddot
 from qddot._arrays import Floats, floats
 from qddot._scene import Scene
-from qddot._solution import Solution, State
+from qddot._solve import Solution, State
 from qddot._starts import end_of, model_of, require_measurable, seconds_of
 from qddot._system import System
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+from dataclasses import dataclass
 from typing import Any, Sequence
 
 import numpy as np
@@ -10,8 +12,54 @@ from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
 from qddot._arrays import Floats, floats, frozen, number, whole_numbers
-from qddot._explanation import Explanation
-from qddot._mesh import mesh_toml
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """The unknowns of a scene that remain, the reductions, and their reasons.
+
+    `left_out` has pairs (reduction, sentence). `omega_max` [rad/s] is the largest natural frequency
+    at the start, at most `omega_bound`. `largest_stable_step` = 2/omega_max [s] is that of Verlet's
+    method. `unstable` is the number of directions in which the energy falls at the start; the
+    motion along the fastest one grows as exp(growth t). print() shows all of that in sentences.
+    """
+
+    text: str
+    drawn_unknowns: int
+    unknowns: int
+    left_out: tuple[tuple[str, str], ...]
+    stiffness_is_constant: bool
+    omega_max: float
+    omega_bound: float
+    unstable: int
+    flat: int
+    growth: float
+
+    @property
+    def largest_stable_step(self) -> float:
+        return 2 / self.omega_max if self.omega_max > 0 else np.inf
+
+    def __str__(self) -> str:
+        return self.text.rstrip()
+
+
+def _list(values: Sequence[float]) -> str:
+    return repr([float(x) for x in values])
+
+
+def _quoted(text: str) -> str:
+    """A string of TOML."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _of_handle(name: str, doc: str) -> Any:
+    """A read-only property of a scene; arrays are read-only, too."""
+
+    def value(scene: Scene) -> Any:
+        held = getattr(scene._handle, name)
+        return frozen(held) if isinstance(held, np.ndarray) else held
+
+    return property(value, doc=doc)
 
 
 class Scene:
@@ -122,83 +170,45 @@ class Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its rest
         length. `pins`: boxes (min, max) whose nodes are fixed."""
         path = os.path.abspath(os.fspath(file))
-        numbers = {
-            "stiffness": stiffness,
-            "node_mass": node_mass,
-            "total_mass": total_mass,
-            "bending_stiffness": bending_stiffness,
-            "scale": scale,
-        }
-        text = mesh_toml(path, numbers, pins, gravity, until)
+        stem = os.path.splitext(os.path.basename(path))[0]
+        lines = [f"name = {_quoted(stem)}"]
+        if until is not None:
+            lines.append(f"until = {float(until)!r}")
+        if gravity is not None:
+            lines.append(f"gravity = {_list(gravity)}")
+        lines += ["[mesh]", f"file = {_quoted(path)}"]
+        numbers = dict(
+            stiffness=stiffness,
+            node_mass=node_mass,
+            total_mass=total_mass,
+            bending_stiffness=bending_stiffness,
+            scale=scale,
+        )
+        lines += [f"{name} = {float(x)!r}" for name, x in numbers.items() if x is not None]
+        for low, high in pins:
+            lines += ["[[mesh.pin]]", f"min = {_list(low)}", f"max = {_list(high)}"]
+        text = "\n".join(lines) + "\n"
         return cls._of(_qddot.Scene.parse(text, path, os.path.dirname(path)))
 
-    name = property(lambda self: str(self._handle.name))
-    dimension = property(lambda self: int(self._handle.dimension))
-
-    @property
-    def until(self) -> float | None:
-        """The default end time of runs [s]."""
-        return self._handle.until
-
-    @property
-    def stiff_above(self) -> float | None:
-        """Springs with more stiffness than this [N/m] are the stiff ones."""
-        return self._handle.stiff_above
-
-    @property
-    def starts_at_equilibrium(self) -> bool:
-        """Whether its motion begins at rest, downhill from the positions."""
-        return self._handle.starts_at_equilibrium
-
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings from reading the scene."""
-        return self._handle.warnings
-
-    @property
-    def positions(self) -> Floats:
-        """(nodes, dimension) [m]."""
-        return frozen(self._handle.positions)
-
-    @property
-    def velocities(self) -> Floats:
-        """(nodes, dimension) [m/s]."""
-        return frozen(self._handle.velocities)
-
-    @property
-    def mass(self) -> Floats:
-        """(nodes) [kg]."""
-        return frozen(self._handle.mass)
-
-    @property
-    def pinned(self) -> NDArray[np.bool_]:
-        """(nodes), whether each is fixed."""
-        return frozen(self._handle.pinned)
-
-    @property
-    def gravity(self) -> Floats:
-        """(dimension) [m/s^2]."""
-        return frozen(self._handle.gravity)
-
-    @property
-    def springs(self) -> NDArray[np.int64]:
-        """(springs, 2), the nodes of each."""
-        return frozen(self._handle.springs)
-
-    @property
-    def stiffness(self) -> Floats:
-        """(springs) [N/m]."""
-        return frozen(self._handle.stiffness)
-
-    @property
-    def rest_length(self) -> Floats:
-        """(springs) [m]."""
-        return frozen(self._handle.rest_length)
-
-    @property
-    def quartic(self) -> Floats:
-        """(springs) [N/m^3]."""
-        return frozen(self._handle.quartic)
+    name: str = _of_handle("name", "Its name.")
+    dimension: int = _of_handle("dimension", "The coordinates of a node: 1, 2 or 3.")
+    until: float | None = _of_handle("until", "The default end time of runs [s].")
+    stiff_above: float | None = _of_handle(
+        "stiff_above", "Springs with more stiffness than this [N/m] are the stiff ones."
+    )
+    starts_at_equilibrium: bool = _of_handle(
+        "starts_at_equilibrium", "Whether its motion begins at rest, downhill from the positions."
+    )
+    warnings: list[str] = _of_handle("warnings", "Warnings from reading the scene.")
+    positions: Floats = _of_handle("positions", "(nodes, dimension) [m].")
+    velocities: Floats = _of_handle("velocities", "(nodes, dimension) [m/s].")
+    mass: Floats = _of_handle("mass", "(nodes) [kg].")
+    pinned: NDArray[np.bool_] = _of_handle("pinned", "(nodes), whether each is fixed.")
+    gravity: Floats = _of_handle("gravity", "(dimension) [m/s^2].")
+    springs: NDArray[np.int64] = _of_handle("springs", "(springs, 2), the nodes of each.")
+    stiffness: Floats = _of_handle("stiffness", "(springs) [N/m].")
+    rest_length: Floats = _of_handle("rest_length", "(springs) [m].")
+    quartic: Floats = _of_handle("quartic", "(springs) [N/m^3].")
 
     def replace(self, **changes: Any) -> Scene:
         """The same scene with these arguments of Scene() replaced."""
@@ -227,9 +237,7 @@ class Scene:
     def explain(self, keep: Sequence[str] = ()) -> Explanation:
         """The unknowns that remain, the reductions with their reasons, w_max and the largest stable
         step."""
-        record = self._model(keep=keep).explain()
-        record["left_out"] = tuple(record["left_out"])
-        return Explanation(**record)
+        return Explanation(**self._model(keep=keep).explain())
 
     def model(self, keep: Sequence[str] = ()) -> _qddot.Model:
         """The smallest system with the motion of the scene, over its unknowns q: mass, force(q),

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import os
+import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, field
@@ -14,19 +16,77 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
-from qddot._chart_files import draw, save
 from qddot._arrays import count
 from qddot._methods import method as method_named
 from qddot._reference import Reference, reference as make_reference
 from qddot._scene import Scene
+from qddot._solve import table_with_head
 from qddot._starts import end_of, require_measurable, require_offered, seconds_of
 from qddot._system import System
 
-_text = ("scene", "method", "knob", "outcome", "family", "stock_of")
-_whole = (
-    "steps rejected force_evaluations stiffness_evaluations factorizations solves newton_iterations "
-    "indefinite_factorizations order_reductions stability_limited_steps timed_runs order"
-).split()
+_drawing = os.path.join(os.path.dirname(__file__), "drawing")
+
+
+def save(
+    folder: str | os.PathLike[str],
+    tables: dict[str, NDArray[Any]],
+    record: dict[str, Any],
+    scene: str,
+    reference: dict[str, Any],
+) -> None:
+    """Writes each table as a CSV file of its name, the record as chart.json, and reference.json."""
+    os.makedirs(folder, exist_ok=True)
+    for name, rows in tables.items():
+        with open(os.path.join(folder, f"{name}.csv"), "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(rows.dtype.names or ())
+            writer.writerows([_cell(value) for value in row.tolist()] for row in rows)
+    with open(os.path.join(folder, "chart.json"), "w", encoding="utf-8") as file:
+        json.dump(record, file)
+    with open(os.path.join(folder, "reference.json"), "w", encoding="utf-8") as file:
+        json.dump(_reference(scene, reference), file, indent=1)
+
+
+def drawn_chart(folder: str, ending: str) -> bytes:
+    """The picture, .png or .svg, of the chart whose files are in the folder."""
+    done = subprocess.run(
+        [sys.executable, os.path.join(_drawing, "work_precision.py"), folder],
+        env={**os.environ, "PYTHONPATH": _drawing, "MPLBACKEND": "Agg"},
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode != 0:
+        raise RuntimeError(f"the chart cannot be drawn: {done.stderr.strip()[-300:]}")
+    with open(os.path.join(folder, f"chart{ending}"), "rb") as drawn:
+        return drawn.read()
+
+
+def _reference(scene: str, record: dict[str, Any]) -> dict[str, Any]:
+    certified = record["certified"]
+    copied = (
+        "until made_by chaotic rounding_effect beyond_horizon lyapunov modal_shares_floor "
+        "only_symmetric"
+    ).split()
+    return {
+        "scene": scene,
+        **{name: record[name] for name in copied},
+        **{f"certified_{name}": certified[name] for name in ("position", "velocity", "energy")},
+        "horizon": _finite(record["horizon"]),
+        "out_of_symmetry": {"horizon": _finite(record.get("symmetric_until", math.inf))},
+        "scales": {"displacement": record["displacement"], "parts": record["parts"]},
+    }
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else ""
+    return value
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
 # The columns of points.csv, as the program work_precision writes it.
 COLUMNS = (
     "scene method knob value outcome t_reached error_position error_velocity error_energy time_s "
@@ -91,10 +151,17 @@ class WorkPrecision:
 
     def draw(self, path: str | os.PathLike[str]) -> None:
         """Draws the chart into a PNG or SVG file. Raises RuntimeError if matplotlib is missing."""
-        with tempfile.TemporaryDirectory() as parent:
-            folder = os.path.join(parent, "chart")
+        ending = os.path.splitext(os.fspath(path))[1].lower()
+        if ending not in (".png", ".svg"):
+            raise ValueError(f"{os.fspath(path)}: allowed are the endings .png and .svg")
+        drawn = self._drawn(ending)
+        with open(path, "wb") as file:
+            file.write(drawn)
+
+    def _drawn(self, ending: str) -> bytes:
+        with tempfile.TemporaryDirectory() as folder:
             self.save(folder)
-            draw(folder, path)
+            return drawn_chart(folder, ending)
 
     def __repr__(self) -> str:
         methods = len(set(self.points["method"]))
@@ -106,42 +173,30 @@ class WorkPrecision:
     def _repr_png_(self) -> bytes | None:
         drawn: bytes | None = self.__dict__.get("_png")
         if drawn is None:
-            with tempfile.TemporaryDirectory() as folder:
-                path = os.path.join(folder, "chart.png")
-                try:
-                    self.draw(path)
-                except RuntimeError:
-                    return None  # the table works without matplotlib, too
-                with open(path, "rb") as file:
-                    drawn = file.read()
+            try:
+                drawn = self._drawn(".png")
+            except RuntimeError:
+                return None  # the table works without matplotlib, too
             object.__setattr__(self, "_png", drawn)
         return drawn
 
     def _repr_html_(self) -> str | None:
         if self._repr_png_():  # notebooks would show HTML in its place
             return None
-        head = "".join(f"<th>{name}</th>" for name in ("accuracy", "take", "at", "error", "time"))
         rows = []
-        for row in self.front:
-            if row["method"]:
-                knob = f"{row['knob']} = {row['value']:.3g}"
-                cells = (
-                    f"{row['accuracy']:.0e}",
-                    row["method"],
-                    knob,
-                    f"{row['error_position']:.1e}",
-                    f"{row['time_s']:.3g} s",
-                )
-                rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
-        return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
+        for row in self.front[self.front["method"] != ""]:
+            knob = f"{row['knob']} = {row['value']:.3g}"
+            error, time = f"{row['error_position']:.1e}", f"{row['time_s']:.3g} s"
+            rows.append((f"{row['accuracy']:.0e}", row["method"], knob, error, time))
+        return table_with_head(("accuracy", "take", "at", "error", "time"), rows)
 
 
 def _table(names: Sequence[str], records: list[dict[str, Any]]) -> NDArray[Any]:
     def kind(name: str) -> tuple[str, str]:
-        if name in _text or name.endswith(("hand_written", "sundials", "fastest")):
-            longest = max((len(str(record[name])) for record in records), default=1)
-            return name, f"U{max(1, longest)}"
-        return name, "i8" if name in _whole else "f8"
+        values = [record[name] for record in records]
+        if all(isinstance(value, str) for value in values):
+            return name, f"U{max(map(len, values), default=1) or 1}"
+        return name, "i8" if all(isinstance(value, int) for value in values) else "f8"
 
     table = np.empty(len(records), dtype=[kind(name) for name in names])
     for i, record in enumerate(records):
@@ -209,7 +264,7 @@ def work_precision(
 
     try:
         made = _qddot.work_precision(
-            exact._held, list(methods), limit, repeats, {}, report if see else None
+            exact._held, list(methods), limit, repeats, report if see else None
         )
     finally:
         if line:
@@ -217,40 +272,27 @@ def work_precision(
     scene = of.name if isinstance(of, Scene) else "system"
     for record in made["points"]:
         record["scene"] = scene
-        record["knob"] = str(record["knob"])
     points = _table(COLUMNS, made["points"])
     chart = json.loads(made["chart"]) | {"scene": scene}
     return WorkPrecision(exact, points, _front(made["points"], chart), scene, chart)
 
 
 def _front(points: list[dict[str, Any]], chart: dict[str, Any]) -> NDArray[Any]:
-    names = (
-        "accuracy method knob value error_position time_s stability_margin hand_written "
-        "hand_written_time_s sundials sundials_time_s"
-    ).split()
+    nan = math.nan
+    nothing = {"method": "", "knob": "", "value": nan, "error_position": nan, "time_s": nan}
     rows = []
     for row in chart["rows"]:
         best, own, sundials = (
-            points[row[which]] if row[which] is not None else None
+            nothing if row[which] is None else points[row[which]]
             for which in ("point", "hand_written", "sundials")
         )
-        nothing = {
-            "method": "",
-            "knob": "",
-            "value": math.nan,
-            "error_position": math.nan,
-            "time_s": math.nan,
-        }
-        best, own, sundials = best or nothing, own or nothing, sundials or nothing
-        rows.append(
-            {
-                "accuracy": row["accuracy"],
-                **{name: best[name] for name in nothing},
-                "stability_margin": math.nan if row["margin"] is None else row["margin"],
-                "hand_written": own["method"],
-                "hand_written_time_s": own["time_s"],
-                "sundials": sundials["method"],
-                "sundials_time_s": sundials["time_s"],
-            }
-        )
-    return _table(names, rows)
+        rows.append({
+            "accuracy": row["accuracy"],
+            **{name: best[name] for name in nothing},
+            "stability_margin": nan if row["margin"] is None else float(row["margin"]),
+            "hand_written": own["method"],
+            "hand_written_time_s": own["time_s"],
+            "sundials": sundials["method"],
+            "sundials_time_s": sundials["time_s"],
+        })  # fmt: skip
+    return _table(list(rows[0]), rows)

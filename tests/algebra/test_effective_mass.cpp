@@ -70,17 +70,6 @@ const std::vector<Compressed>& compressed_cases() {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(solves_positive_matrices_to_round_off) {
-  for (const Case& c : cases(1.2)) {
-    EffectiveMass solver(*c.system);
-    for (const double s : {0.0, 1e-6, 1e-2, 1e6}) {
-      BOOST_TEST(solver.factorize(2, s, c.k()) == Definiteness::positive);
-      const SymmetricMatrix a = c.effective(2, s);
-      BOOST_TEST(backward_error(solver, a) < tolerance_of(a));
-    }
-  }
-}
-
 BOOST_AUTO_TEST_CASE(compression_turns_the_matrix_indefinite_at_the_largest_eigenvalue) {
   for (const auto& [c, lambda] : compressed_cases()) {
     EffectiveMass solver(*c.system);

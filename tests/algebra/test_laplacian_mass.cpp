@@ -29,8 +29,8 @@ void check_solve(const System& system, double s) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(it_solves_on_networks_with_images_anchors_and_nodes_on_planes) {
-  for_random_images([](const ImageSample& sample) {
-    const auto system = make_mass_spring(sample.network);
+  for_networks({1.4, 0.7}, [](const Network& network, const Vec&) {
+    const auto system = make_mass_spring(network);
     for (const double s : {0.0, 1e-4, 1e4}) {
       check_solve(*system, s);
     }

@@ -2,7 +2,11 @@
 
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/natural_modes.hpp"
+#include "qddot/analysis/stability.hpp"
+#include "tests/measure.hpp"
+#include "tests/model/differences.hpp"
 #include "tests/problems.hpp"
+#include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(curvature_signs)
 
@@ -21,40 +25,15 @@ struct Reference {
   Column at_node;
 
   Reference(const Problem& p) {
-    const Network& n = p.network;
-    const Index size = p.initial.q.size();
-    stiff = Dense::Zero(size, size);
-    at_node = Column::Zero(size);
-    const auto place = [&](int i) -> Column {
-      return p.initial.q.segment(n.dimension * i, n.dimension).cast<Real>();
+    const auto block = [](const SpringLaw& law, Real l, const Column& n) -> Dense {
+      const Dense along = n * n.transpose(), one = Dense::Identity(n.size(), n.size());
+      return law.tangent(l) * along + law.tension(l) / l * (one - along);
     };
-    const auto block = [&](const SpringLaw& law, const Column& d) -> Dense {
-      const Real l = d.norm();
-      const Column e = d / l;
-      const Dense one = Dense::Identity(n.dimension, n.dimension);
-      return law.tangent(l) * e * e.transpose() + law.tension(l) / l * (one - e * e.transpose());
+    const auto everywhere = [](const SpringLaw& law, Real l, const Column& n) -> Dense {
+      return law.tangent(l) * Dense::Identity(n.size(), n.size());
     };
-    const auto add = [&](int i, int j, const Dense& b) {
-      stiff.block(n.dimension * i, n.dimension * j, n.dimension, n.dimension) += b;
-    };
-    const auto note = [&](int i, const SpringLaw& law, const Column& d) {
-      at_node.segment(n.dimension * i, n.dimension).array() += law.tangent(Real(d.norm()));
-    };
-    for (const auto& link : n.links) {
-      const Column d = place(link.j) - place(link.i);
-      const Dense b = block(link.law, d);
-      add(link.i, link.i, b);
-      add(link.j, link.j, b);
-      add(link.i, link.j, -b);
-      add(link.j, link.i, -b);
-      note(link.i, link.law, d);
-      note(link.j, link.law, d);
-    }
-    for (const auto& anchor : n.anchors) {
-      const Column d = anchor.point.head(n.dimension).cast<Real>() - place(anchor.i);
-      add(anchor.i, anchor.i, block(anchor.law, d));
-      note(anchor.i, anchor.law, d);
-    }
+    stiff = -sum_of_blocks<Real>(p.network, p.initial.q, block);
+    at_node = -sum_of_blocks<Real>(p.network, p.initial.q, everywhere).diagonal();
   }
   // Eigenvalues of D^-1 (-K), ascending.
   Column eigenvalues(const Column& d) const {
@@ -74,6 +53,36 @@ Problem pendulum(double ratio, bool upright) {
   p.network.anchors = {{0, {0, 0, 0}, {ratio * weight, 1 - weight / (ratio * weight) * -y}}};
   p.initial.q = Vec{{0, y}};
   return p;
+}
+
+// Eigenvalues of -K are wrong by some roundings of the largest row sum.
+constexpr double tolerance = 1e-13;
+
+// The number of clearly negative eigenvalues of -K, by a dense decomposition, and the least of
+// them.
+struct Truth {
+  int negative;
+  double least, row_sum;
+
+  Truth(const System& system, const Vec& q) {
+    const Eigen::MatrixXd stiff = -dense(stiffness_at(system, q));
+    const Vec values = stiff.selfadjointView<Eigen::Lower>().eigenvalues();
+    row_sum = stiff.cwiseAbs().rowwise().sum().maxCoeff();
+    negative = static_cast<int>((values.array() < -1e-9 * row_sum).count());
+    least = values[0];
+  }
+};
+
+void check(const System& system, const Vec& q) {
+  const Truth truth(system, q);
+  BOOST_TEST(qddot::curvature_signs(system, q).negative == truth.negative);
+  const auto [value, direction] = smallest_curvature(system, q);
+  BOOST_TEST(std::abs(value - truth.least) < tolerance * truth.row_sum);
+  BOOST_TEST(std::abs(direction.norm() - 1) < tolerance);
+  const double quotient = -direction.dot(dense(stiffness_at(system, q)) * direction);
+  BOOST_TEST(std::abs(quotient - value) < tolerance * truth.row_sum);
+  BOOST_TEST(std::abs(largest_row_sum(stiffness_at(system, q)) - truth.row_sum) <
+             tolerance * truth.row_sum);
 }
 
 }  // namespace
@@ -132,6 +141,11 @@ BOOST_AUTO_TEST_CASE(signs_of_random_networks_are_those_of_more_digits_at_all_ra
             const Column rates = reference.eigenvalues(system->mass().cast<Real>());
             BOOST_TEST(rates[signs.negative] >= -std::pow(signs.flat_rate, 2));
           }
+          if (decades == 0) {
+            check(*system, p.initial.q);
+            for (int i = 0; i < nodes; i += 2) p.network.node_mass[i] = 0;
+            check(*make_mass_spring(p.network), p.initial.q);
+          }
           negative += signs.negative;
           flat += signs.flat;
           all += static_cast<int>(values.size());
@@ -184,6 +198,51 @@ BOOST_AUTO_TEST_CASE(soft_modes_beside_stiff_ones_have_their_own_digits) {
       BOOST_TEST(std::abs(modes.squares[j] / (w * w) - 1) < 1e-10);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(large_cloth_is_counted_as_a_small_one_is) {
+  for (const double stretch : {1.1, 1.0, 0.9}) {
+    const ReducedScene reduced(stretched(draw("cloth", {{"nodes", 13}}), stretch),
+                               Reductions::all_directions());
+    check(reduced.system(), reduced.initial().q);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(strut_between_two_forces_buckles_in_two_directions) {
+  // One node between two pins, on springs compressed by 10 %: -K is 2 tau / l < 0 across the line
+  // and 2 k along it.
+  const auto system =
+      make_mass_spring({.dimension = 3,
+                        .node_mass = Vec::Ones(1),
+                        .anchors = {{0, {-0.9, 0, 0}, {10, 1}}, {0, {0.9, 0, 0}, {10, 1}}}});
+  BOOST_TEST(qddot::curvature_signs(*system, Vec::Zero(3)).negative == 2);
+  const auto [value, direction] = smallest_curvature(*system, Vec::Zero(3));
+  BOOST_TEST(std::abs(value + 2 * 10 * 0.1 / 0.9) < tolerance * 20);
+  BOOST_TEST(std::abs(direction[0]) < tolerance);
+}
+
+BOOST_AUTO_TEST_CASE(zeros_of_the_metric_become_the_mean_mass) {
+  const auto metric = [](const Vec& mass) {
+    return metric_of_all(*make_mass_spring({.dimension = 1, .node_mass = mass}));
+  };
+  BOOST_TEST((metric(Vec{{1, 0, 3}}) == Vec{{1, 2, 3}}));
+  BOOST_TEST((metric(Vec{{0, 0}}) == Vec{{1, 1}}));
+}
+
+BOOST_AUTO_TEST_CASE(stiffness_that_overflows_is_no_endless_loop) {
+  const auto system = make_mass_spring(
+      {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 1e300}}}});
+  BOOST_CHECK_THROW(qddot::curvature_signs(*system, Vec::Constant(1, 1e10)), std::runtime_error);
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_stable) {
+  const auto system = make_mass_spring({.dimension = 3});
+  BOOST_TEST(qddot::curvature_signs(*system, Vec()).negative == 0);
+  BOOST_TEST(largest_row_sum(system->stiffness_pattern()) == 0);
+  BOOST_CHECK_THROW(smallest_curvature(*system, Vec()), std::invalid_argument);
+  const auto loose = make_mass_spring({.dimension = 1, .node_mass = Vec::Ones(2)});
+  BOOST_TEST(qddot::curvature_signs(*loose, Vec{{0, 1}}).negative == 0);
+  BOOST_TEST(smallest_curvature(*loose, Vec{{0, 1}}).value == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

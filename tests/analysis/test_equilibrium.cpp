@@ -198,6 +198,23 @@ BOOST_AUTO_TEST_CASE(random_networks_come_to_rest_however_they_start) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(rest_does_not_depend_on_directions_and_numbers) {
+  Scene scene = draw("chain", {{"nodes", 6}, {"stiffness", 30}, {"pinned_ends", 2}});
+  scene.nodes[2].position += Eigen::Vector3d(0.1, 0.2, -0.3);
+  const auto moved = [](const Scene& s) {
+    return renumbered(turned(s, some_rotation(), {1, 2, 3}), {2, 0, 5, 3, 1, 4});
+  };
+  const auto at_rest = [](Scene s) {
+    const ReducedScene reduced(s, Reductions::all_directions());
+    const Equilibrium e = find_equilibrium(reduced.system(), reduced.initial().q, 1);
+    check_minimum(reduced.system(), e, 1);
+    BOOST_TEST(position_tolerance(e) < 1e-10);
+    s.nodes = reduced.expand({0, e.q, Vec::Zero(e.q.size())});
+    return s;
+  };
+  BOOST_TEST(farthest(at_rest(moved(scene)).nodes, moved(at_rest(scene)).nodes) < 1e-10);
+}
+
 BOOST_AUTO_TEST_CASE(loose_ends_are_no_obstacle_and_are_told) {
   // A free pair ends at its rest length somewhere, in some direction.
   const auto pair = drawn("pair", {{"stretch", 1.4}, {"rest_length", 0.8}});

@@ -40,6 +40,19 @@ std::vector<NamedReductions> sets_of_reductions() {
   return sets;
 }
 
+// The scene's nodes as they are in that state.
+std::vector<Node> nodes_at(const Scene& scene, const PlainState<long double>& state) {
+  std::vector<Node> nodes = scene.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto axis = static_cast<Eigen::Index>(c);
+      nodes[i].position[axis] = static_cast<double>(state.x[3 * i + c]);
+      nodes[i].velocity[axis] = static_cast<double>(state.v[3 * i + c]);
+    }
+  }
+  return nodes;
+}
+
 // Energies of nodes with these positions and velocities, by the independent model.
 struct PlainEnergies {
   long double kinetic = 0, potential = 0;  // [J]
@@ -206,8 +219,7 @@ DrawnMotion::DrawnMotion(const Scene& scene) : scene_(scene), end_(scene, plain_
   const bool is_known = end_.advance(until());
   known_until_ = is_known ? until() : static_cast<double>(end_.state().t);
   if (!is_known) return;
-  const auto start = end_.model().positions();
-  std::vector<Node> nodes = end_nodes();
+  const std::vector<Node> nodes = nodes_at(scene, end_.state());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     displacement_ = std::max(displacement_, (nodes[i].position - scene.nodes[i].position).norm());
     if (!has_velocity(scene.nodes[i])) continue;
@@ -230,27 +242,8 @@ DrawnMotion::DrawnMotion(const Scene& scene) : scene_(scene), end_(scene, plain_
     floor_ = 1;
     return;
   }
-  std::vector<Node> other = nodes;
-  for (std::size_t i = 0; i < other.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto axis = static_cast<Eigen::Index>(c);
-      other[i].position[axis] = static_cast<double>(moved.state().x[3 * i + c]);
-      other[i].velocity[axis] = static_cast<double>(moved.state().v[3 * i + c]);
-    }
-  }
-  floor_ = 1000 * (difference(nodes, other) + epsilon * (far / displacement_ + 1));
-}
-
-std::vector<Node> DrawnMotion::end_nodes() const {
-  std::vector<Node> nodes = scene_.nodes;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto axis = static_cast<Eigen::Index>(c);
-      nodes[i].position[axis] = static_cast<double>(end_.state().x[3 * i + c]);
-      nodes[i].velocity[axis] = static_cast<double>(end_.state().v[3 * i + c]);
-    }
-  }
-  return nodes;
+  const double moved_by = difference(nodes, nodes_at(scene, moved.state()));
+  floor_ = 1000 * (moved_by + epsilon * (far / displacement_ + 1));
 }
 
 double DrawnMotion::difference(const std::vector<Node>& a, const std::vector<Node>& b) const {
@@ -265,7 +258,7 @@ double DrawnMotion::difference(const std::vector<Node>& a, const std::vector<Nod
 }
 
 double DrawnMotion::error(const std::vector<Node>& nodes) const {
-  return difference(nodes, end_nodes());
+  return difference(nodes, nodes_at(scene_, end_.state()));
 }
 
 Comparisons& Comparisons::operator+=(const Comparisons& more) {

@@ -33,8 +33,6 @@ class DrawnMotion {
   double difference(const std::vector<Node>& a, const std::vector<Node>& b) const;
 
  private:
-  std::vector<Node> end_nodes() const;
-
   Scene scene_;
   PlainMotion<long double> end_;
   double known_until_ = 0, displacement_ = 0, speed_ = 0, floor_ = 0;

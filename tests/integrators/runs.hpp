@@ -217,8 +217,7 @@ struct Asked {
 
 // The network with every spring named stiff, or none.
 inline Network with_all_named(Network network, bool stiff) {
-  for (auto& link : network.links) link.stiff = stiff;
-  for (auto& anchor : network.anchors) anchor.stiff = stiff;
+  for_springs(network, [=](auto& spring) { spring.stiff = stiff; });
   network.offers_split = true;
   return network;
 }
@@ -226,13 +225,8 @@ inline Network with_all_named(Network network, bool stiff) {
 // The hammock with every spring of zero rest length: K is constant, no two nodes or directions
 // alike.
 inline Problem linear_hammock(int dimension) {
-  Problem p = hammock(dimension);
-  const auto straighten = [](auto& springs) {
-    for (auto& spring : springs) spring.law.rest_length = spring.law.quartic = 0;
-  };
-  straighten(p.network.links);
-  straighten(p.network.anchors);
-  return p;
+  const Problem p = hammock(dimension);
+  return {without_rest_lengths(p.network), p.initial};
 }
 
 // A hammock that the method applies to.

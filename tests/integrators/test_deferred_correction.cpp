@@ -65,27 +65,6 @@ BOOST_AUTO_TEST_CASE(integrals_are_exact_for_polynomials_up_to_the_number_of_ste
   }
 }
 
-BOOST_AUTO_TEST_CASE(the_first_sweep_is_verlets_method) {
-  constexpr Index steps = 7;
-  constexpr double h = 0.1;
-  const Vec mass = Vec::LinSpaced(5, 1, 3), q0 = Vec::LinSpaced(5, -1, 1), v0 = mass - q0;
-  const auto pull = [&](const Vec& q) -> Vec {
-    return -q.array().sin().matrix().cwiseQuotient(mass);
-  };
-  DeferredCorrection first(steps, 5);
-  first.compute(q0, v0, pull(q0), h, 1, [&](const Vec& q, MutableVec g) { g = pull(q); });
-  Vec q = q0, v = v0;
-  for (Index j = 0; j < steps; ++j) {
-    v += h / 2 * pull(q);
-    const Vec before = q;
-    q += h * v;
-    v += h / 2 * pull(q);
-    // Some ten operations are rounded in another order.
-    BOOST_TEST(distance(first.d(j), q - before) < 1e-14);
-    BOOST_TEST(distance(first.g(j + 1), pull(q)) < 1e-14);
-  }
-}
-
 // Over a fixed number of steps a method of order p errs by h^(p+1).
 BOOST_AUTO_TEST_CASE(each_sweep_adds_two_orders_until_the_polynomial_is_what_errs) {
   for (const Index steps : {3, 5, 7, 9}) {

@@ -1,6 +1,5 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/model/block_diagonal_system.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(energy_growth)
@@ -132,9 +131,7 @@ BOOST_AUTO_TEST_CASE(methods_with_soft_springs_above_their_limit_say_so_with_rea
 }
 
 BOOST_AUTO_TEST_CASE(of_several_parts_the_worst_counts) {
-  std::vector<std::unique_ptr<System>> parts;
-  for (const double omega : {1., 11.}) parts.push_back(make_mass_spring(pushed(omega).network));
-  const BlockDiagonalSystem both(std::move(parts));
+  const auto both = in_parts(pushed(1).network, pushed(11).network);
   const Run r =
       run(method_named("verlet"), both, {0, Vec{{0, 0}}, Vec{{1000, 1e-3}}}, 6, {.step_size = 0.2});
   BOOST_TEST(r.summary.message == "");

@@ -151,23 +151,6 @@ BOOST_AUTO_TEST_CASE(a_free_pair_falls_with_its_centre_and_swings_about_it) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(it_keeps_the_energy_and_runs_backwards_to_its_start) {
-  for (const int dimension : {1, 2, 3}) {
-    Problem p = linear_hammock(dimension);
-    const auto system = make_mass_spring(p.network);
-    const double energy = total_energy(*system, p.initial), scale = std::abs(energy) + 1000;
-    for (const double h : {0.01, 3.7, 1e3}) {
-      const State there = run_exact(p, 20, h).state;
-      // 12 modes; each of up to 2000 steps rounds.
-      const double steps = std::ceil(20 / h);
-      BOOST_TEST(std::abs(total_energy(*system, there) - energy) < 12 * eps * scale * (10 + steps));
-      const State back = run_exact({p.network, {0, there.q, -there.v}}, 20, h).state;
-      BOOST_TEST(distance(back.q, p.initial.q) < 100 * rounding(25, 20, steps, 12));
-      BOOST_TEST(distance(back.v, -p.initial.v) < 100 * rounding(25, 20, steps, 12));
-    }
-  }
-}
-
 BOOST_AUTO_TEST_CASE(it_counts_one_force_a_step_and_one_eigenproblem_a_run) {
   const Problem p = linear_hammock(2);
   const auto system = make_mass_spring(p.network);

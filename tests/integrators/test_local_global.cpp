@@ -30,12 +30,6 @@ double energy(const Problem& p, const State& end) {
   return energy(*make_mass_spring(p.network), p.initial, end);
 }
 
-Problem without_quartic(Problem p) {
-  for (auto& link : p.network.links) link.law.quartic = 0;
-  for (auto& anchor : p.network.anchors) anchor.law.quartic = 0;
-  return p;
-}
-
 // Networks with and without quartic springs, stretched and compressed.
 std::vector<Problem> networks() {
   std::mt19937 random(17);
@@ -44,7 +38,7 @@ std::vector<Problem> networks() {
     for (const double stretch : {1.3, 0.8}) {
       const Problem p = random_network(random, dimension, 7, stretch);
       list.push_back(p);
-      list.push_back(without_quartic(p));
+      list.push_back({without_quartic(p.network), p.initial});
     }
   }
   return list;
@@ -178,7 +172,8 @@ BOOST_AUTO_TEST_CASE(accelerations_reach_the_same_minimum_in_fewer_iterations) {
 
 BOOST_AUTO_TEST_CASE(they_take_the_iterations_they_are_told_and_one_factorisation_a_step_size) {
   constexpr std::int64_t steps = 7;
-  for (const Problem& p : {hammock(2), without_quartic(hammock(3)), linear_hammock(2)}) {
+  const Problem quadratic{without_quartic(hammock(3).network), hammock(3).initial};
+  for (const Problem& p : {hammock(2), quadratic, linear_hammock(2)}) {
     for (const Method& method : all()) {
       for (const int iterations : {0, 1, 4, 10}) {
         BOOST_TEST_CONTEXT(method.name << ", " << iterations) {
@@ -209,16 +204,6 @@ BOOST_DATA_TEST_CASE(on_quartic_springs_far_beyond_their_length_the_step_is_shor
   const State end = step(method, *system, start, h, 1);
   BOOST_TEST(energy(*system, start, end) < energy(*system, start, start));
   BOOST_TEST(std::abs(end.q[0]) < 3);
-}
-
-BOOST_DATA_TEST_CASE(seconds_say_what_the_factorisation_and_the_solves_took, all(), method) {
-  const Fallen cloth;
-  const Options options{.step_size = 0.01, .timed = true};
-  const Summary summary =
-      run(method, cloth.scene.system(), cloth.state, cloth.state.t + 0.05, options).summary;
-  BOOST_TEST(summary.seconds.factorization > 0);
-  BOOST_TEST(summary.seconds.solve > 0);
-  BOOST_TEST(summary.seconds.force > 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

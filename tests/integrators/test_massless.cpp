@@ -303,14 +303,4 @@ BOOST_AUTO_TEST_CASE(methods_of_fixed_steps_balance_massless_nodes_off_the_line_
   }
 }
 
-BOOST_DATA_TEST_CASE(methods_that_divide_by_the_mass_refuse_at_once, general_methods(), method) {
-  const Problem p = two_springs(1);
-  if (method.is(Trait::accepts_massless)) return;
-  const Run r = run(method, p, 1, options_of(method, 0.01, 1e-6));
-  BOOST_TEST(name(r.summary.outcome) == "singular_mass");
-  BOOST_TEST(r.summary.message == advice(Outcome::singular_mass));
-  BOOST_TEST(same(r.state, p.initial));
-  BOOST_TEST(r.summary.counts == (Counts{}));
-}
-
 BOOST_AUTO_TEST_SUITE_END()

@@ -71,25 +71,10 @@ bool is_named_failure(const Run& r) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_bent_strut_is_solved_where_compression_outweighs_the_mass) {
-  for (const double bend : {0.001, 0.01, 0.1}) {
-    for (const double h : {0.01, 0.03, 0.1}) {
-      BOOST_TEST_CONTEXT("bend " << bend << " m, h = " << h << " s") {
-        const Minimisation problem(strut(bend), h);
-        BOOST_TEST(problem.least_curvature(problem.start()) < -1);  // indefinite at the start
-        const Run r = problem.step(h);
-        BOOST_TEST(r.summary.message == "");
-        BOOST_TEST(is_solved(problem, r.state.v));
-        BOOST_TEST(total_energy(problem.system(), r.state) <
-                   total_energy(problem.system(), {0, strut(bend).initial.q, problem.start()}));
-      }
-    }
-  }
-}
-
 BOOST_AUTO_TEST_CASE(a_bent_strut_buckles_and_comes_to_rest_without_compression) {
   const Problem p = strut(0.01);
   const Minimisation problem(p, 0.03);
+  BOOST_TEST(problem.least_curvature(problem.start()) < -1);  // compression outweighs the mass
   const Run r = problem.step(3);
   BOOST_TEST(r.summary.message == "");
   // The energy is zero if springs have their rest length in the room that they have. The energy

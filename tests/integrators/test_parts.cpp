@@ -11,77 +11,35 @@ namespace {
 constexpr double t_end = start_time + 0.6137;  // no whole number of steps
 Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6); }
 
-// Whether the parts of `whole` are where each run alone is, to the last bit.
-bool are_alone(const Run& whole, const Together& together, const std::vector<Run>& alone) {
-  for (std::size_t i = 0; i < alone.size(); ++i) {
-    if (!same(together.part(whole.state, i), alone[i].state)) return false;
-  }
-  return true;
-}
-
-std::vector<Run> runs_alone(const Method& method, const std::vector<Part>& parts,
-                            const Observer& observer = {}) {
-  std::vector<Run> alone;
-  for (const Part& one : parts) {
-    alone.push_back(run(method, one, t_end, options_for(method), observer));
-    BOOST_TEST(alone.back().summary.message == "");
-  }
-  return alone;
-}
-
 }  // namespace
 
-BOOST_DATA_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone, methods(), method) {
+BOOST_DATA_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone_and_shows_all_at_one_time,
+                     methods(), method) {
   const std::vector<Part> parts = parts_for(method);
   const Together together(parts);
-  const Run whole = run(method, together, t_end, options_for(method));
-  const std::vector<Run> alone = runs_alone(method, parts);
-  BOOST_TEST(whole.summary.message == "");
-  BOOST_TEST(whole.state.t == t_end);
-  BOOST_TEST(whole.summary.t_reached == t_end);
-  BOOST_TEST(are_alone(whole, together, alone));
-  Counts sum;
-  for (const Run& one : alone) sum += one.summary.counts;
-  BOOST_TEST(whole.summary.counts == sum);
-  BOOST_TEST(sum.steps > 0);
-}
-
-BOOST_DATA_TEST_CASE(adaptive_methods_take_for_each_part_the_steps_that_it_needs,
-                     methods_of(Knob::rtol), method) {
-  const Oscillator slow{.stiffness = 2}, fast{.stiffness = 20000};  // 1 and 100 rad/s
-  const std::vector<Part> parts = {part(slow.problem()), part(fast.problem())};
-  const std::vector<Run> alone = runs_alone(method, parts);
-  const Together together(parts);
-  const Run whole = run(method, together, t_end, options_for(method));
-  BOOST_TEST(are_alone(whole, together, alone));
-  BOOST_TEST(10 * alone[0].summary.counts.steps < alone[1].summary.counts.steps);
-
-  // Both take the steps of the fast one as one system, which the test above shows.
-  Problem joined = slow.problem();
-  joined.network.node_mass = Vec::Constant(2, slow.mass);
-  joined.network.anchors.push_back({1, {0, 0, 0}, {fast.stiffness}});
-  const auto system = make_mass_spring(joined.network);
-  const Run one = run(method, *system, together.start, t_end, options_for(method));
-  BOOST_TEST(one.summary.message == "");
-  BOOST_TEST(!are_alone(one, together, alone));
-}
-
-BOOST_DATA_TEST_CASE(an_observer_sees_all_parts_at_the_same_time, methods(), method) {
-  const std::vector<double> times = {start_time + 0.013, start_time + 0.2, start_time + 1. / 3,
-                                     t_end};
-  const std::vector<Part> parts = parts_for(method);
-  const Together together(parts);
-  Film film{times};
-  const Run whole = run(method, together, t_end, options_for(method), film.observer());
-  BOOST_TEST(whole.summary.message == "");
-  BOOST_TEST_REQUIRE(film.seen.size() == times.size());
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    Film own{times};
-    run(method, parts[i], t_end, options_for(method), own.observer());
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      BOOST_TEST(film.seen[k].t == times[k]);
-      BOOST_TEST(same(together.part(film.seen[k], i), own.seen[k]));
+  for (const std::vector<double>& times :
+       {std::vector<double>{},
+        {start_time + 0.013, start_time + 0.2, start_time + 1. / 3, t_end}}) {
+    Film film{times};
+    const Run whole = run(method, together, t_end, options_for(method), film.observer());
+    BOOST_TEST(whole.summary.message == "");
+    BOOST_TEST(whole.state.t == t_end);
+    BOOST_TEST(whole.summary.t_reached == t_end);
+    BOOST_TEST_REQUIRE(film.seen.size() == times.size());
+    Counts sum;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      Film own{times};
+      const Run alone = run(method, parts[i], t_end, options_for(method), own.observer());
+      BOOST_TEST(alone.summary.message == "");
+      BOOST_TEST(same(together.part(whole.state, i), alone.state));
+      for (std::size_t k = 0; k < times.size(); ++k) {
+        BOOST_TEST(film.seen[k].t == times[k]);
+        BOOST_TEST(same(together.part(film.seen[k], i), own.seen[k]));
+      }
+      sum += alone.summary.counts;
     }
+    if (times.empty()) BOOST_TEST(whole.summary.counts == sum);
+    BOOST_TEST(sum.steps > 0);
   }
 }
 

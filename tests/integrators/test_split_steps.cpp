@@ -21,11 +21,6 @@ std::vector<Method> mri_methods() {
   std::erase_if(list, [](const Method& method) { return method.family != Family::sundials; });
   return list;
 }
-std::vector<Method> multirate_methods() {
-  std::vector<Method> list = split_methods(Knob::step_size);
-  std::erase_if(list, [](const Method& method) { return method.family == Family::sundials; });
-  return list;
-}
 
 }  // namespace
 
@@ -46,18 +41,6 @@ BOOST_DATA_TEST_CASE(newtons_matrix_is_that_of_the_stiff_springs_alone, pairs(),
   BOOST_TEST(stiff.force + soft.force == c.force_evaluations);
   BOOST_TEST(whole.force == 0);
   BOOST_TEST(soft.force < stiff.force);
-}
-
-BOOST_DATA_TEST_CASE(a_frame_ten_thousand_times_stiffer_does_not_bound_adaptive_steps, pairs(),
-                     method) {
-  const ReducedScene scene = framed_cloth(6);
-  const double until = 0.1;
-  // Verlet's h < 2/w_max: no explicit method goes further with a force.
-  const double explicit_steps = until * frequency_bound(scene.system(), scene.initial().q) / 2;
-  const Run r = run(method, scene.system(), scene.initial(), until, {.rtol = 1e-3});
-  BOOST_TEST(r.summary.message == "");
-  BOOST_TEST(10 * r.summary.counts.steps < explicit_steps,
-             method.name << ": " << r.summary.counts << " against " << explicit_steps);
 }
 
 BOOST_DATA_TEST_CASE(a_stiff_frame_leaves_steps_as_long_as_the_cloths_own,
@@ -124,18 +107,6 @@ BOOST_AUTO_TEST_CASE(small_steps_below_rounding_are_refused) {
       BOOST_TEST(run(method, p, t + 1e-2, {.step_size = 1e-3}).summary.message == "");
     }
   }
-}
-
-BOOST_DATA_TEST_CASE(without_soft_springs_only_the_short_steps_err, multirate_methods(), method) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(with_all_named(p.network, true));
-  const State end = KnownMotion("hammock", p).end;
-  const auto error = [&](double h) {
-    return distance(run(method, *system, p.initial, 1, {.step_size = h}).state.q, end.q);
-  };
-  // Two halvings. Short steps become more in a step by whole numbers, at order 5 by none here.
-  const double order = std::log2(error(1. / 40) / error(1. / 160)) / 2;
-  BOOST_TEST(order > std::min(method.order, 4) - 0.5, method.name << ": " << order);
 }
 
 BOOST_AUTO_TEST_CASE(without_stiff_springs_order_2_is_velocity_verlet) {

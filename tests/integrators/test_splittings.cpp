@@ -79,17 +79,6 @@ BOOST_AUTO_TEST_CASE(each_splitting_meets_all_conditions_of_its_order_and_not_th
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_coefficient_wrong_in_its_13th_digit_is_noticed) {
-  Splitting wrong = std::ranges::find(all(), "blanes_moan6", &WithTable<Splitting>::name)->table;
-  wrong.kicks[2] += 1e-13;
-  wrong.kicks[9] += 1e-13;
-  wrong.kicks[5] -= 1e-13;
-  wrong.kicks[6] -= 1e-13;
-  const std::vector<double> list = defects(wrong, 6);
-  BOOST_TEST(list[0] < rounding);
-  BOOST_TEST(*std::ranges::max_element(list) > rounding);
-}
-
 BOOST_AUTO_TEST_CASE(each_splitting_is_the_same_read_backwards) {
   for (const auto& [name, splitting] : all()) {
     BOOST_TEST_CONTEXT(name) {

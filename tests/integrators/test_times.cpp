@@ -9,26 +9,6 @@ BOOST_AUTO_TEST_SUITE(times)
 using namespace qddot;
 using namespace std::string_literals;
 
-BOOST_AUTO_TEST_CASE(every_method_lands_on_the_end_exactly_also_between_steps) {
-  Problem p = hammock(2);
-  p.initial.t = 0.7;
-  // 10, 10.3 and almost 11 steps, not too long for Newton's iteration without a line search; a
-  // start and an end that are no binary fractions.
-  for (const double t_end : {1.2, 1.215, 0.7 + 0.54995}) {
-    for (const Method& method : general_methods()) {
-      BOOST_TEST_CONTEXT(method.name << " to " << t_end) {
-        const Run r = run(method, p, t_end, options_of(method, 0.05, 1e-4));
-        if (r.summary.outcome == Outcome::diverged) continue;
-        BOOST_TEST(r.summary.message == "");
-        BOOST_TEST(r.state.t == t_end);
-        BOOST_TEST(r.summary.t_reached == t_end);
-        if (method.knob == Knob::step_size)
-          BOOST_TEST(r.summary.counts.steps == (t_end > 1.2 ? 11 : 10));
-      }
-    }
-  }
-}
-
 BOOST_AUTO_TEST_CASE(time_does_not_drift_over_many_steps) {
   // A running sum of a million times 0.1 would be off by 1e-6.
   const Problem p = Oscillator{.mass = 1, .stiffness = 1}.problem();
@@ -47,36 +27,12 @@ BOOST_DATA_TEST_CASE(a_run_to_its_own_start_changes_nothing, methods(), method) 
   BOOST_TEST(r.summary.counts == (Counts{}));
 }
 
-BOOST_DATA_TEST_CASE(an_observer_at_the_ends_of_steps_changes_nothing, methods_of(Knob::step_size),
-                     method) {
-  const Options options{.step_size = 1. / 64};
-  Film film{{0.25, 0.5, 1}};
-  const Run watched = run(method, hammock(2), 1, options, film.observer());
-  const Run alone = run(method, hammock(2), 1, options);
-  BOOST_TEST(same(watched.state, alone.state));
-  BOOST_TEST(watched.summary.counts == alone.summary.counts);
-}
-
 BOOST_DATA_TEST_CASE(an_exception_of_the_observer_comes_out_as_itself, general_methods(), method) {
   const auto refuse = [](const State&) { throw std::runtime_error("seen enough"); };
   const Run r = run(method, hammock(2), 1, options_of(method, 0.02, 1e-5), {{0.3}, refuse});
   BOOST_TEST(r.thrown == "seen enough");
   BOOST_TEST(r.state.t == 0.3);
   BOOST_TEST(is_finite(r.state));
-}
-
-BOOST_DATA_TEST_CASE(an_integrator_run_twice_from_one_start_ends_the_same_to_the_last_bit,
-                     general_methods(), method) {
-  const Problem p = hammock(2);
-  const auto system = make_mass_spring(p.network);
-  const auto integrator = make_integrator(method, *system, options_of(method, 0.01, 1e-5));
-  State first = p.initial, second = p.initial;
-  const Summary a = integrator->advance(first, 0.503), b = integrator->advance(second, 0.503);
-  BOOST_TEST(a.message == "");
-  BOOST_TEST(b.message == "");
-  BOOST_TEST(same(first, second));
-  BOOST_TEST(a.counts == b.counts);
-  BOOST_TEST(a.t_reached == b.t_reached);
 }
 
 // A run that starts with steps of 1e-6 s ends with steps of 1e-2 s, for which other pivots are

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/csv.hpp"
-#include "experiments/kit/written_table.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/folder.hpp"
 

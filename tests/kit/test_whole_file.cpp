@@ -1,6 +1,5 @@
 #include <boost/test/unit_test.hpp>
 
-#include "experiments/kit/overwriting.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "tests/folder.hpp"

@@ -82,14 +82,6 @@ BOOST_AUTO_TEST_CASE(it_starts_where_an_explicit_method_fails) {
   BOOST_TEST(before >= 0.98 * steps);
 }
 
-BOOST_AUTO_TEST_CASE(it_starts_where_an_implicit_method_is_a_whole_motion_off) {
-  const auto points = oscillator().run("implicit_euler", short_runs);
-  BOOST_TEST_REQUIRE(points.size() > 2u);
-  BOOST_TEST(reached(points[0]));
-  const double coarsest = points[0].value;
-  BOOST_TEST((points[0].errors.position >= 1 || coarsest == oscillator().until));
-}
-
 // Near their limit explicit steps are closer (see test_ladder.cpp), which has an end before 16
 // times as many of them.
 BOOST_AUTO_TEST_CASE(points_divide_the_expected_error_by_four) {
@@ -97,7 +89,13 @@ BOOST_AUTO_TEST_CASE(points_divide_the_expected_error_by_four) {
        {std::tuple("implicit_euler", 1, false), std::tuple("implicit_midpoint", 2, false),
         std::tuple("verlet", 2, true), std::tuple("kahan_li8", 8, true)}) {
     const auto points = oscillator().run(method, short_runs);
+    BOOST_TEST_REQUIRE(points.size() > 2u);
     const double coarsest = std::ranges::find_if(points, reached)->value;
+    // Without a limit it starts a whole motion off.
+    if (!has_limit) {
+      BOOST_TEST(coarsest == points[0].value);
+      BOOST_TEST((points[0].errors.position >= 1 || coarsest == oscillator().until));
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double steps = oscillator().until / points[i].value;
       BOOST_TEST(std::abs(steps - std::round(steps)) < 1e-9 * steps);

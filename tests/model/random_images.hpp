@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "tests/model/differences.hpp"
 #include "tests/problems.hpp"
 
 namespace qddot {
@@ -14,12 +15,6 @@ struct ImageSample {
 };
 
 constexpr int image_nodes = 6;
-
-// Whether coordinate d of a node does not stay zero.
-inline bool is_unknown(const Network& network, int node, int d) {
-  return network.zero_coordinates.empty() ||
-         !(network.zero_coordinates[static_cast<std::size_t>(node)] >> d & 1);
-}
 
 // Six nodes in a row with springs of all kinds between any two of them, gravity and loads. There
 // are links and images in both directions and several times, and images of a node itself; node 2 is
@@ -94,22 +89,6 @@ inline ImageSample random_images(std::mt19937& random, int dimension, double str
     if (length > 0.5) s.network.anchors.push_back({i, point, law(length)});
   }
   return s;
-}
-
-// Calls check(sample) in each dimension, with all springs stretched or compressed, with and without
-// planes.
-template <class Check>
-void for_random_images(const Check& check) {
-  std::mt19937 random(11);
-  for (const int dimension : {1, 2, 3}) {
-    for (const double stretch : {1.4, 0.7}) {
-      for (const bool on_planes : {false, true}) {
-        for (int sample = 0; sample < 3; ++sample) {
-          check(random_images(random, dimension, stretch, on_planes));
-        }
-      }
-    }
-  }
 }
 
 // Calls check(network, q) in each dimension, with all springs at the given stretches, for a network

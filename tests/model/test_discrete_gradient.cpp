@@ -58,19 +58,6 @@ BOOST_AUTO_TEST_CASE(it_is_the_force_where_both_ends_are_one_and_the_same_in_bot
   });
 }
 
-BOOST_AUTO_TEST_CASE(it_is_the_force_in_the_middle_to_second_order) {
-  for_systems([](const System& system, const Vec& a, std::mt19937& random) {
-    const Vec way = random_vector(random, a.size(), 1);
-    const auto difference = [&](double part) {
-      const Vec b = a + part * way;
-      return distance(discrete_gradient_at(system, a, b), force_at(system, (a + b) / 2));
-    };
-    if (difference(0.01) == 0) return;  // linear springs alone
-    // A quarter of the distance: a sixteenth, but for third-order terms of a few percent.
-    BOOST_TEST(std::abs(difference(0.01) / difference(0.0025) / 16 - 1) < 0.2);
-  });
-}
-
 BOOST_AUTO_TEST_CASE(without_pins_it_has_no_sum_and_no_moment_about_the_way_s_middle) {
   std::mt19937 random(32);
   for (int sample = 0; sample < 5; ++sample) {

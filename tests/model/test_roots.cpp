@@ -8,9 +8,9 @@
 
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/model/kernels/roots.hpp"
+#include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/mass_spring.hpp"
 #include "tests/measure.hpp"
-#include "tests/model/vectors/roots_and_quotients.hpp"
 
 namespace qddot::kernels {
 
@@ -21,8 +21,10 @@ namespace qddot::kernels {
 #define QDDOT_ENTRY(level) &level::roots_and_quotients,
 QDDOT_LEVELS(QDDOT_DECLARE)
 
-bool roots_and_quotients(Roots roots, const double* a, const double* t, double* root,
-                         double* quotient, std::ptrdiff_t n) {
+// root = sqrt(a) and quotient = t/root by one kind of roots, n numbers of each, n a multiple of 8.
+// False where the version in use has no such roots.
+static bool roots_and_quotients(Roots roots, const double* a, const double* t, double* root,
+                                double* quotient, std::ptrdiff_t n) {
   static constexpr decltype(&roots_and_quotients) versions[] = {QDDOT_LEVELS(QDDOT_ENTRY)};
   return versions[level()](roots, a, t, root, quotient, n);
 }

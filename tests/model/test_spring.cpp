@@ -102,26 +102,6 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(block_is_the_jacobian_of_the_force, Dimension, Dim
   });
 }
 
-BOOST_AUTO_TEST_CASE(block_has_the_tangent_along_and_the_tension_per_length_across) {
-  for_random_springs<3>([](const SpringLaw& law, const Point<3>& d) {
-    const Block<3> b = spring_stiffness(law, d);
-    const double l = d.norm(), tolerance = round_off * block_scale<3>(law, d);
-    BOOST_TEST(distance(b * d / l, d / l * law.tangent(l)) < tolerance);
-    const Point<3> across = d.unitOrthogonal();
-    BOOST_TEST(distance(b * across, across * (law.tension(l) / l)) < tolerance);
-  });
-}
-
-BOOST_AUTO_TEST_CASE(compression_makes_the_block_indefinite_and_tension_positive) {
-  const auto least = [](double l) {
-    const Point<3> d(0, l, 0);
-    const Block<3> b = spring_stiffness(stiff, d);
-    return b.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
-  };
-  BOOST_TEST(least(2.5) > 0);
-  BOOST_TEST(least(1.5) < 0);
-}
-
 BOOST_AUTO_TEST_CASE_TEMPLATE(without_rest_length_the_limit_of_no_length_is_kept, Dimension,
                               Dimensions) {
   constexpr int D = Dimension::value;

@@ -120,16 +120,6 @@ BOOST_AUTO_TEST_CASE(blocks_follow_one_another) {
   BOOST_TEST(whole.stiffness_pattern().coeffs().abs().maxCoeff() == 0);
 }
 
-BOOST_AUTO_TEST_CASE(no_blocks_are_a_system_without_unknowns) {
-  const BlockDiagonalSystem system = in_parts();
-  BOOST_TEST(system.size() == 0);
-  BOOST_TEST(system.potential(Vec()) == 0);
-  BOOST_TEST(force_at(system, Vec()).size() == 0);
-  BOOST_TEST(stiffness_at(system, Vec()).size() == 0);
-  BOOST_TEST(system.stiffness_is_constant());
-  BOOST_TEST(is_valid_at(system, Vec()));
-}
-
 BOOST_AUTO_TEST_CASE(stiffness_is_constant_where_it_is_in_every_system_within) {
   const Network constant = tied({.stiffness = 2}), varying = tied({2, 1});
   BOOST_TEST(in_parts(constant, constant).stiffness_is_constant());

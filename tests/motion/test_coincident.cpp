@@ -5,7 +5,6 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/independent/comparison.hpp"
 #include "tests/independent/random_scene.hpp"
-#include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(coincident)
@@ -15,19 +14,6 @@ using namespace qddot;
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
-
-// Two pairs of nodes in one place each, which part.
-Scene two_pairs() {
-  Scene scene{.dimension = 2};
-  for (const auto& [y, v] : {std::pair(1., -1.), {1., 1.}, {-1., 1.}, {-1., -1.}}) {
-    scene.nodes.push_back({.position = {0, y, 0}, .velocity = {v, 0, 0}, .mass = 1});
-  }
-  for (const auto& [i, j] : {std::pair(0u, 1u), {2u, 3u}, {0u, 3u}, {1u, 2u}}) {
-    const double l0 = (scene.nodes[j].position - scene.nodes[i].position).norm();
-    scene.springs.push_back({{i, j}, {100, l0}});
-  }
-  return scene;
-}
 
 // A grid of n x n nodes drawn twice, sewn together by springs of no length, and stretched.
 Scene two_layers(int n, bool numbers_alternate) {
@@ -77,22 +63,6 @@ void check_all(const Scene& scene) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_CASE(pairs_that_part_are_four_images_of_one_node) {
-  const Scene scene = two_pairs();
-  const ReducedScene reduced(scene);
-  BOOST_TEST(reduced.energy(reduced.initial()) == 2, boost::test_tools::tolerance(10 * eps));
-  BOOST_TEST(reduced.system().size() == 2);
-  check_all(scene);
-  // Each moves away from the mirror at its own side with 1 m/s, held back by 4 x 100 N/m.
-  const auto nodes_at = [&](const Reductions& reductions) {
-    return nodes_after(scene, reductions, method_named("kahan_li8"), 1e-3, 0.1);
-  };
-  const auto all = nodes_at(Reductions()), drawn = nodes_at(Reductions::only({Reduction::pins}));
-  // A hundred steps of numbers around one.
-  BOOST_TEST(farthest(all, drawn) < 1e-12);
-  for (const Node& node : all) BOOST_TEST(std::abs(node.position.x()) > 0.01);
-}
 
 BOOST_AUTO_TEST_CASE(layers_of_a_grid_keep_all_of_their_mass) {
   for (const int n : {3, 4, 5, 6, 7}) {

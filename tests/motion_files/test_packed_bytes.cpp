@@ -54,18 +54,15 @@ BOOST_AUTO_TEST_CASE(zeros_are_small) {
 }
 
 BOOST_AUTO_TEST_CASE(shuffled_bytes_stand_by_their_place) {
-  const auto check = [](const auto& numbers, std::size_t stride) {
-    using Number = std::decay_t<decltype(numbers[0])>;
-    Bytes to(sizeof(Number) * stride, 0);
-    shuffle<Number>({numbers.data(), numbers.size()}, to.data(), stride);
-    const auto* bytes = reinterpret_cast<const unsigned char*>(numbers.data());
-    for (std::size_t i = 0; i < stride; ++i) {
-      for (std::size_t k = 0; k < sizeof(Number); ++k)
-        BOOST_TEST(to[k * stride + i] == (i < numbers.size() ? bytes[sizeof(Number) * i + k] : 0));
-    }
-  };
-  check(std::vector<float>{1.5F, -2.0F, 0.0F, 1e-30F, 3.4e38F}, 7);
-  check(std::vector<double>{1.0 / 3, -1e300, 0}, 3);
+  const std::vector<float> numbers = {1.5F, -2.0F, 0.0F, 1e-30F, 3.4e38F};
+  const std::size_t stride = 7;
+  Bytes to(4 * stride, 0);
+  shuffle({numbers.data(), numbers.size()}, to.data(), stride);
+  const auto* bytes = reinterpret_cast<const unsigned char*>(numbers.data());
+  for (std::size_t i = 0; i < stride; ++i) {
+    for (std::size_t k = 0; k < 4; ++k)
+      BOOST_TEST(to[k * stride + i] == (i < numbers.size() ? bytes[4 * i + k] : 0));
+  }
 }
 
 #ifdef __x86_64__

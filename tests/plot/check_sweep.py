@@ -7,15 +7,13 @@ import unittest
 from itertools import combinations
 
 from check_charts import ABOUT, COLUMNS, EXPLICIT, SOLVING, HandMade, a_sweep, crowd, write_study
-from crossover_sentences import sentences
 from names import one_line
-from scene_title import cut, draw_title, in_two
 from sheet import Sheet
 from study_tables import draw, judge, read_table, texts_of, write_table
 from style import use_style
-from sweep import read
+from sweep import Crossover, read
+from sweep_picture import cut, draw_title, in_two, sentences
 from sweep_picture import draw as drawn
-from sweep_tables import Crossover
 
 FASTEST = "scene until accuracy method knob value error time_s runner_up margin judged_by".split()
 CROSSOVERS = "along accuracy low high crossing scene_low scene_high method_low method_high".split()

@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/bench/peers.hpp"
-#include "experiments/bench/ratios.hpp"
+#include "experiments/bench/comparison.hpp"
 #include "tests/folder.hpp"
 
 BOOST_AUTO_TEST_SUITE(bench)

@@ -8,9 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/bench/peer_choice.hpp"
-#include "experiments/bench/peers.hpp"
-#include "experiments/bench/same_steps.hpp"
+#include "experiments/bench/peer_ladder.hpp"
 #include "tests/folder.hpp"
 
 BOOST_AUTO_TEST_SUITE(lammps_peer)

@@ -153,7 +153,8 @@ BOOST_AUTO_TEST_CASE(a_complete_study_is_not_measured_again) {
     Case first(folder, "--size 1");
     first.piece("p", 1);
     CsvFile table(folder / "t.csv", {"x"});
-    BOOST_TEST(first.study->finish({&table}, nlohmann::json::object(), 3) == 3);
+    first.study->complete(table, nlohmann::json::object(), 3);
+    BOOST_TEST(first.study->conclude(3) == 3);
   }
   BOOST_TEST(folder.listing() == "t.csv t.json ");
   BOOST_TEST((Case(folder, "--size 1 --resume").study->completed() == std::optional(3)));

@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kit/written_table.hpp"
+#include "experiments/kit/csv.hpp"
 #include "experiments/sweep/results.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "tests/folder.hpp"

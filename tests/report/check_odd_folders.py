@@ -96,9 +96,9 @@ class Points(Folder):
         self.assertIn("No run gave a point.", data["notes"])
         self.assertRegex(data["notes"][0], "interrupted by SIGINT")
         # Infinite and missing numbers are null.
-        good[0] |= {"energy_growth": "inf", "error_velocity": "nan", "steps": ""}
+        good[0] |= {"energy_growth": "inf", "setup_s": "nan", "steps": ""}
         data = self.of(good[:1])
-        for name in ("energy_growth", "error_velocity", "steps"):
+        for name in ("energy_growth", "setup_s", "steps"):
             self.assertIsNone(data["points"][name][0])
         self.assertEqual(len(data["methods"]), 1)
         reached = [answer for answer in data["answers"] if answer["point"] is not None]

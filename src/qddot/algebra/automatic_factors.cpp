@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include "qddot/algebra/conjugate_gradients.hpp"
-#include "qddot/algebra/factors.hpp"
 #include "qddot/algebra/symbolic_factorization.hpp"
 
 namespace qddot {

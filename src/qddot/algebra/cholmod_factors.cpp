@@ -3,7 +3,6 @@
 #include <new>
 #include <numeric>
 #include <omp.h>
-#include <stdexcept>
 #include <sys/mman.h>
 
 #include <suitesparse/cholmod.h>

@@ -2,7 +2,6 @@
 
 #include "qddot/algebra/automatic_factors.hpp"
 #include "qddot/algebra/conjugate_gradients.hpp"
-#include "qddot/algebra/factors.hpp"
 
 namespace qddot {
 namespace {

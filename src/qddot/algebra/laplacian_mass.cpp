@@ -4,8 +4,6 @@
 #include <numeric>
 #include <span>
 
-#include "qddot/algebra/factors.hpp"
-
 namespace qddot {
 namespace {
 

@@ -6,7 +6,6 @@
 #include <new>
 #include <numeric>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include <suitesparse/cholmod.h>

@@ -11,7 +11,6 @@
 #include "qddot/analysis/stability.hpp"
 #include "qddot/model/capabilities.hpp"
 #include "qddot/model/machine_epsilon.hpp"
-#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

@@ -7,7 +7,6 @@
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/stability.hpp"
 #include "qddot/model/machine_epsilon.hpp"
-#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

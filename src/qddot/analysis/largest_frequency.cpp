@@ -6,7 +6,6 @@
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
-#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

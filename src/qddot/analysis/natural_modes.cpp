@@ -12,7 +12,6 @@
 #include "qddot/algebra/leading_pairs.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/model/machine_epsilon.hpp"
-#include "qddot/model/system.hpp"
 
 namespace qddot {
 namespace {

@@ -1,7 +1,5 @@
 #include "qddot/model/system.hpp"
 
-#include <stdexcept>
-
 namespace qddot {
 
 const SymmetricMatrix& System::stiffness_pattern() const {

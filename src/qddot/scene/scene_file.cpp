@@ -1,7 +1,6 @@
 #include "qddot/scene/scene_file.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <span>
 
 #include <fmt/format.h>

@@ -1,7 +1,5 @@
 #include "qddot/scene/settle.hpp"
 
-#include <algorithm>
-
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 

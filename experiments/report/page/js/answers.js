@@ -4,15 +4,8 @@ import { named } from "./marks.js";
 import { allRuns, knobOf, methods, onChoice, points, report, state, visit } from "./report.js";
 import { words } from "./words.js";
 
-const HEADS = [
-  "Accuracy",
-  "Take",
-  "At",
-  "Error",
-  "Time of a run",
-  "The next method takes",
-  "Best of other families takes",
-];
+const table = byId("answers-table").querySelector("table");
+const heads = [...table.tHead.rows[0].cells].map((head) => head.textContent);
 // Times that are nearer to each other are not told apart.
 const AS_FAST = 1.02;
 const judged = report.quantities[0].column;
@@ -54,19 +47,19 @@ function cellsOf({ point, next, others, warning }) {
 function row(answer) {
   const { accuracy, point } = answer;
   const cell = (content, at) =>
-    element("td", { "data-label": HEADS[at] }, element("div", ...[content].flat()));
+    element("td", { "data-label": heads[at] }, element("div", ...[content].flat()));
   const first = element("span.number.take", words.number(accuracy));
   if (point !== null) {
     const cells = [first, ...cellsOf(answer)].map(cell);
     return element("tr", { "data-point": point, click: () => visit({ run: point }) }, cells);
   }
   const why = element("div.quiet", answer.why ?? "no answer");
-  return element("tr", cell(first, 0), element("td", { "data-label": HEADS[1], colspan: 6 }, why));
+  return element("tr", cell(first, 0), element("td", { "data-label": heads[1], colspan: 6 }, why));
 }
 
 // Shows which rows are of the chosen run.
 function mark() {
-  for (const line of byId("answers-table").querySelectorAll("[data-point]")) {
+  for (const line of table.querySelectorAll("[data-point]")) {
     const chosen = Number(line.dataset.point) === state.run;
     line.classList.toggle("chosen", chosen);
     line.querySelector(".pick").setAttribute("aria-pressed", String(chosen));
@@ -84,15 +77,9 @@ const kind =
 byId("answers-about").append(
   `The fastest run of all whose ${kind} is at most the accuracy. Choose a row to see its run.`,
 );
-const heads = HEADS.map((head) => element("th", { scope: "col" }, head));
-const table = element(
-  "table.answers",
-  element("thead", element("tr", heads)),
-  element("tbody", report.answers.map(row)),
-);
-byId("answers-table").append(
-  report.answers.length ? table : element("p.quiet", "No run gave an answer."),
-);
+byId("answers-rows").append(...report.answers.map(row));
+table.hidden = !report.answers.length;
+byId("no-answers").hidden = !table.hidden;
 if (report.answers_note) byId("answers-table").append(element("p.about", report.answers_note));
 byId("answers").hidden = false;
 mark();

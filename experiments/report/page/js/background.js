@@ -37,6 +37,3 @@ byId("background-parts").append(
   ),
 );
 byId("background").hidden = false;
-byId("footer").append(
-  "Made by qddot. This file holds everything that it shows and asks nobody for anything.",
-);

@@ -1,11 +1,11 @@
 // The chart of all runs: error against time or a count.
-import { byId, element } from "./element.js";
+import { byId } from "./element.js";
 import { lineOf, markOf } from "./marks.js";
 import {
   FAINT,
   NARROW,
+  axisTitle,
   decades,
-  listenToMarks,
   plainWords,
   plot,
   powerOfTen,
@@ -137,17 +137,16 @@ function ringTrace() {
 function axes(narrow) {
   const { quantity, ordinate } = view;
   const inTime = ordinate === "time_s";
-  const title = (text, standoff) => ({ text: plainWords(text), standoff, font: { size: 13 } });
   const better = (how, what) => `◀ ${how}          ${what}`;
   const across = narrow ? quantity.axis : better("more accurate", quantity.axis);
   const up = inTime
     ? better("faster", "time of one run, median")
     : better("less work", words.plain(ordinate));
   return {
-    xaxis: { ...decades(view.left, view.right), title: title(across, 8) },
+    xaxis: { ...decades(view.left, view.right), title: axisTitle(across, 8, 13) },
     yaxis: {
       ...decades(view.bottom, view.top, inTime ? words.seconds : powerOfTen),
-      title: title(up, 6),
+      title: axisTitle(up, 6, 13),
     },
   };
 }
@@ -258,24 +257,14 @@ function labels(strong, front, margin) {
   });
 }
 
-function drawNone() {
-  // That takes the listeners too.
-  Plotly.purge(drawing);
-  byId("whole").hidden = true;
-  drawing.replaceChildren(element("p.quiet", "No run gave a point of this chart."));
-  drawing.style.height = "auto";
-}
-
 /** Draws the chart for the present choice; a zoom stays while its axes do. */
 export function drawChart() {
-  const wasNone = view === null;
   view = currentView();
   byId("quantity-about").textContent = chosenQuantity().subtitle ?? "";
-  if (!view) return drawNone();
-  if (wasNone) {
-    drawing.style.height = "";
-    drawing.replaceChildren();
-  }
+  byId("no-marks").hidden = view !== null;
+  drawing.hidden = view === null;
+  byId("whole").hidden = true;
+  if (!view) return;
   const narrow = drawing.clientWidth < NARROW;
   const isStrong = (method) => state.shown.has(method);
   const strong = [...methods.keys()].filter(isStrong);
@@ -283,6 +272,7 @@ export function drawChart() {
   const front = frontOf(view);
   const margin = { l: narrow ? 62 : 84, r: 12, t: 10, b: 52 };
   const hasFloor = view.floor !== null;
+  const isFirst = !drawing.data;
   plot(
     drawing,
     [
@@ -300,8 +290,7 @@ export function drawChart() {
     },
     { doubleClick: false },
   );
-  if (wasNone) {
-    listenToMarks(drawing);
+  if (isFirst) {
     drawing.on("plotly_relayout", offerWhole);
     drawing.on("plotly_doubleclick", showWhole);
   }

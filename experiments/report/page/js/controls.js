@@ -1,6 +1,6 @@
 // The clock of a motion, with a slider, play and pause; and the colours of distances from the
 // reference, logarithmic: blue (1e-14), purple, orange (1).
-import { button, element, menuOf } from "./element.js";
+import { byId, options } from "./element.js";
 import { words } from "./words.js";
 
 // In s: about how long a motion plays at first.
@@ -14,7 +14,7 @@ function speeds(until) {
   for (let power = -9; power <= 3; power++)
     for (const digit of [1, 2, 5]) nice.push(digit * 10 ** power);
   const off = (speed) => Math.abs(Math.log10(speed) - wanted);
-  const at = nice.reduce((best, speed, i) => (off(speed) < off(nice[best]) ? i : best), 0);
+  const at = nice.map(off).indexOf(Math.min(...nice.map(off)));
   const offered = new Set([1, ...nice.slice(Math.max(0, at - 4), at + 4)]);
   return { nearest: nice[at], offered: [...offered].sort((a, b) => b - a) };
 }
@@ -24,73 +24,58 @@ function speedInWords(speed) {
   return speed > 1 ? `× ${words.exact(speed)}` : `× 1/${words.count(Math.round(1 / speed))}`;
 }
 
-/** The controls over the times 0 to `until`; `shown(t)` is called at each change of the time. */
-export function playerOf(until, shown) {
-  const { nearest, offered } = speeds(until);
-  let t = 0;
-  let playing = false;
-  let before = null;
+export const player = byId("player");
+const [play, slider, output, speed] = player.children;
+let until = 1;
+let shown = null;
+let t = 0;
+let playing = false;
+let before = null;
 
-  const play = button("", () => set(!playing), { class: "play" });
-  const slider = element("input", {
-    type: "range",
-    min: 0,
-    max: SLIDER_STEPS,
-    step: 1,
-    value: 0,
-    "aria-label": "Time of the motion",
-    input: () => {
-      set(false);
-      go((Number(slider.value) / SLIDER_STEPS) * until);
-    },
-  });
-  const output = element("output");
-  const speed = menuOf(
-    offered.map((one) => [one, speedInWords(one)]),
-    () => {},
-    { "aria-label": "Speed" },
-  );
+/** Lets the player go through the times 0 to `end`, and calls `show(t)` at each change of it. */
+export function startPlayer(end, show) {
+  const { nearest, offered } = speeds(end);
+  [until, shown, t] = [end, show, 0];
+  speed.replaceChildren(...options(offered.map((one) => [one, speedInWords(one)])));
   speed.value = nearest;
-
-  function go(time) {
-    t = Math.min(Math.max(time, 0), until);
-    slider.value = Math.round((SLIDER_STEPS * t) / until);
-    const now = `t = ${words.seconds(t)}`;
-    output.textContent = now;
-    slider.setAttribute("aria-valuetext", now);
-    shown(t);
-  }
-
-  function tick(now) {
-    if (!playing) return;
-    if (before !== null) go(t + ((now - before) / 1000) * Number(speed.value));
-    before = now;
-    if (t >= until) set(false);
-    else requestAnimationFrame(tick);
-  }
-
-  function set(on) {
-    if (on && t >= until) go(0);
-    playing = on;
-    play.textContent = on ? "❚❚ Pause" : "▶ Play";
-    play.setAttribute("aria-pressed", String(on));
-    before = null;
-    if (on) requestAnimationFrame(tick);
-  }
-
-  set(false);
-  const node = element("div.player", play, slider, output, speed);
-  return { node, go, pause: () => set(false) };
+  setPlaying(false);
 }
 
+/** Shows the motion at a time. */
+export function goTo(time) {
+  t = Math.min(Math.max(time, 0), until);
+  slider.value = Math.round((SLIDER_STEPS * t) / until);
+  const now = `t = ${words.seconds(t)}`;
+  output.textContent = now;
+  slider.setAttribute("aria-valuetext", now);
+  shown(t);
+}
+
+function tick(now) {
+  if (!playing) return;
+  if (before !== null) goTo(t + ((now - before) / 1000) * Number(speed.value));
+  before = now;
+  if (t >= until) setPlaying(false);
+  else requestAnimationFrame(tick);
+}
+
+/** Plays the motion on, or pauses it. */
+export function setPlaying(on) {
+  if (on && t >= until) goTo(0);
+  playing = on;
+  play.textContent = on ? "❚❚ Pause" : "▶ Play";
+  play.setAttribute("aria-pressed", String(on));
+  before = null;
+  if (on) requestAnimationFrame(tick);
+}
+
+play.addEventListener("click", () => setPlaying(!playing));
+slider.addEventListener("input", () => {
+  setPlaying(false);
+  goTo((Number(slider.value) / SLIDER_STEPS) * until);
+});
+
 const DECADES = 14;
-const TICKS = [
-  [-14, "≤ 1e-14"],
-  [-10, "1e-10"],
-  [-6, "1e-6"],
-  [-2, "1e-2"],
-  [0, "1"],
-];
 // All about as light as each other, so that a face's shade stays to be seen, and none pale on
 // white.
 const STOPS = [
@@ -126,35 +111,22 @@ export function colorTable() {
   return table;
 }
 
-/** A bar with its numbers, and a pointer at the largest distance, which `point(code)` moves;
-    `known`: the least distance that means something, or null. */
-export function distanceScale(known) {
-  const bar = element("div.scale-bar");
-  bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
-  if (known > 0) {
-    const pale = element("i.scale-unknown");
-    pale.style.width = percent(Math.log10(known));
-    bar.append(pale);
-  }
-  const ticks = TICKS.map(([power, text]) => {
-    const tick = element("span", text);
-    tick.style.left = percent(power);
-    return tick;
-  });
-  const pointer = element("i");
-  const sentence = element("p", { "aria-live": "off" });
-  const node = element(
-    "div.scale",
-    sentence,
-    element("div.scale-now", { "aria-hidden": "true" }, pointer),
-    bar,
-    element("div.scale-ticks", ticks),
-    known > 0 && element("p", `Pale: below ${words.about(known)} the reference itself may be off.`),
-  );
-  function point(code) {
-    pointer.style.left = percent(powerOf(code));
-    const far = code === 0 ? "at most 1e-14" : words.about(10 ** powerOf(code));
-    sentence.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
-  }
-  return { node, point };
+/** A bar of the colours with its numbers. */
+export const scale = byId("scale");
+const [sentence, now, bar, , pale] = scale.children;
+bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
+
+/** Makes distances pale below `known`, the least that means something; none where it is null. */
+export function markUnknown(known) {
+  const unknown = bar.firstElementChild;
+  unknown.hidden = pale.hidden = known === null;
+  unknown.style.width = percent(Math.log10(known));
+  pale.textContent = `Pale: below ${words.about(known)} the reference itself may be off.`;
+}
+
+/** Moves the pointer to the largest packed distance. */
+export function pointAt(code) {
+  now.firstElementChild.style.left = percent(powerOf(code));
+  const far = code === 0 ? "at most 1e-14" : words.about(10 ** powerOf(code));
+  sentence.textContent = `Distance of a node from the reference, relative to the largest displacement. Largest now: ${far}`;
 }

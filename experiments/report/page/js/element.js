@@ -37,20 +37,8 @@ export const definitions = (pairs) =>
 export const button = (text, click, attributes = {}) =>
   element("button", { type: "button", click, ...attributes }, text);
 
-/** A button whose words are a sign; `label` tells its meaning. */
-export const signButton = (sign, label, click) =>
-  button(sign, click, { "aria-label": label, title: label });
-
 /** The options of a menu, from pairs of a value and its words. */
 export const options = (pairs) => pairs.map(([value, text]) => element("option", { value }, text));
-
-/** A menu, which tells `chosen` the value that is chosen, as a text. */
-export const menuOf = (pairs, chosen, attributes = {}) =>
-  element(
-    "select",
-    { change: ({ target }) => chosen(target.value), ...attributes },
-    options(pairs),
-  );
 
 /** A line of a shell with a button that copies it. */
 export function commandLine(line) {

@@ -5,10 +5,11 @@ import {
   GRID,
   INK,
   NARROW,
+  axisTitle,
   decades,
-  listenToMarks,
   plainWords,
   plot,
+  powerOfTen,
   ring,
   widened,
 } from "./plot.js";
@@ -22,7 +23,7 @@ const HIGHEST = 150;
 const SPARE = 28;
 const BINS_A_DECADE = 12;
 const PALE = 0.25;
-const GAP = 0.03;
+const KNOBS = { step_size: "step size h in s", rtol: "tolerance rtol" };
 const EDGES = { t: 4, b: 46 };
 
 // The number of earlier runs at about the same knob, for each of the runs.
@@ -78,24 +79,11 @@ function trace(marks, place) {
   };
 }
 
-function knobAxis(marks, knob, place, count, narrow) {
-  const axis = decades(
-    ...widened(
-      marks.map(({ point }) => points.value[point]),
-      2,
-    ),
-  );
-  const every = Math.ceil(axis.tickvals.length / (narrow ? 3 : 7));
-  const title = words.knobTitle(knob) + (knob === "step_size" ? " in s" : "");
+function knobAxis(marks, knob, narrow) {
+  const values = marks.map(({ point }) => points.value[point]);
   return {
-    ...axis,
-    tickvals: axis.tickvals.filter((_, at) => at % every === 0),
-    ticktext: axis.ticktext.filter((_, at) => at % every === 0),
-    title: { text: plainWords(title), font: { size: 12 }, standoff: 4 },
-    domain: [
-      place / count + (place ? GAP : 0),
-      (place + 1) / count - (place + 1 < count ? GAP : 0),
-    ],
+    ...decades(...widened(values, 2), powerOfTen, narrow ? 3 : 7),
+    title: axisTitle(KNOBS[knob] ?? words.plain(knob), 4, 12),
     fixedrange: true,
     showline: false,
   };
@@ -125,7 +113,6 @@ export function drawFailures() {
   const place = chosen ? knobs.indexOf(points.knob[state.run]) : 0;
   const narrow = drawing.clientWidth < NARROW;
   drawing.style.height = `${rows.at(-1).bottom + EDGES.t + EDGES.b}px`;
-  const isFirst = !drawing.data;
   plot(
     drawing,
     [
@@ -134,12 +121,11 @@ export function drawFailures() {
     ],
     {
       ...Object.fromEntries(
-        knobs.map((knob, at) => [
-          axisOf(at, "xaxis"),
-          knobAxis(over[at], knob, at, knobs.length, narrow),
-        ]),
+        knobs.map((knob, at) => [axisOf(at, "xaxis"), knobAxis(over[at], knob, narrow)]),
       ),
       yaxis: rowAxis(rows, narrow),
+      // The knobs stand beside each other.
+      grid: { rows: 1, columns: knobs.length, xgap: 0.06 },
       margin: { l: narrow ? 104 : 132, r: 12, ...EDGES },
       shapes: rows
         .slice(1)
@@ -154,5 +140,4 @@ export function drawFailures() {
         })),
     },
   );
-  if (isFirst) listenToMarks(drawing);
 }

@@ -1,9 +1,8 @@
 // The list of methods beside the chart: which are drawn strongly.
-import { button, byId, element } from "./element.js";
+import { byId, element } from "./element.js";
 import { swatch } from "./marks.js";
-import { choose, families, methods, onChoice, state } from "./report.js";
+import { choose, familiesWithMethods, methods, onChoice, state } from "./report.js";
 
-const strong = [...state.shown];
 const show = (chosen) => choose({ shown: new Set(chosen) });
 
 function toggle(members, on) {
@@ -41,8 +40,7 @@ const familyGroup = ({ title, members }) =>
     members.map(methodLine),
   );
 
-const noHit = element("p.quiet", { role: "status", hidden: true }, "No method has it.");
-const groups = families.map(familyGroup);
+const groups = familiesWithMethods.map(familyGroup);
 
 function search({ target }) {
   const wanted = target.value.trim().toLowerCase();
@@ -54,27 +52,14 @@ function search({ target }) {
     }
     group.hidden = labels.every((label) => label.hidden);
   }
-  noHit.hidden = groups.some((group) => !group.hidden);
+  byId("no-method").hidden = groups.some((group) => !group.hidden);
 }
 
-byId("legend").append(
-  element("input", {
-    type: "search",
-    placeholder: "Find a method",
-    "aria-label": "Find a method",
-    input: search,
-  }),
-  element(
-    "div.legend-buttons",
-    { role: "group", "aria-label": "Draw strongly" },
-    button("Strong", () => show(strong)),
-    button("All", () => show(methods.keys())),
-    button("None", () => show([])),
-  ),
-  element("div.legend-list", noHit, groups),
-  element(
-    "div.legend-key",
-    element("span", "Strong: on the front, or the best of its family."),
-    element("span", "Yellow line: the least cost at each accuracy."),
-  ),
-);
+byId("method-list").append(...groups);
+byId("method-search").addEventListener("input", search);
+for (const [id, chosen] of [
+  ["draw-strong", [...state.shown]],
+  ["draw-all", [...methods.keys()]],
+  ["draw-none", []],
+])
+  byId(id).addEventListener("click", () => show(chosen));

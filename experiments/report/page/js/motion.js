@@ -1,6 +1,15 @@
 // The motion of the chosen run beside the reference's, and the words on it.
-import { colorTable, distanceScale, playerOf } from "./controls.js";
-import { button, byId, commandLine, element, menuOf, signButton } from "./element.js";
+import {
+  colorTable,
+  goTo,
+  markUnknown,
+  player,
+  pointAt,
+  scale,
+  setPlaying,
+  startPlayer,
+} from "./controls.js";
+import { button, byId, commandLine, element, options } from "./element.js";
 import {
   boundsOf,
   canUnpack,
@@ -30,15 +39,11 @@ const ROUNDING = 1e-6;
 const MOST_BUTTONS = 6;
 
 const sentence = (text) => element("p.quiet", text);
-const lost = element(
-  "p.bad",
-  { role: "status", hidden: true },
-  "The browser took away what the motion is drawn with; it is drawn again when it comes back.",
-);
+const lost = byId("motion-lost");
+const controls = byId("motion-controls");
 
 let stage = null;
-let player = null;
-// The parts {run, body, view} that are drawn, with the scale of distances and how a line is lifted.
+// The parts {run, body, view} that are drawn, with their bounds and how a line is lifted.
 let scene = null;
 let turn = 0;
 
@@ -50,12 +55,15 @@ function keptMotions() {
       "aria-pressed": String(point === state.run),
       title: why,
     });
-  const menu = menuOf(
-    keptRuns.map(({ point, label, why }) => [point, why ? `${label}: ${why}` : label]),
-    (run) => choose({ run: Number(run) }),
-    { "aria-label": "All runs whose motion was kept" },
+  const menu = element(
+    "select",
+    {
+      "aria-label": "All runs whose motion was kept",
+      change: () => choose({ run: Number(menu.value) }),
+    },
+    element("option", { value: "", disabled: true }, `all ${keptRuns.length}`),
+    options(keptRuns.map(({ point, label, why }) => [point, why ? `${label}: ${why}` : label])),
   );
-  menu.prepend(element("option", { value: "", disabled: true }, `all ${keptRuns.length}`));
   menu.value = keptRuns.some(({ point }) => point === state.run) ? state.run : "";
   return element(
     "div.kept",
@@ -182,7 +190,7 @@ function show(t) {
   for (const { run, body, view } of scene.parts) {
     place(run, body, t);
     const largest = paint(run, body, t);
-    if (largest !== null) scene.scale.point(largest);
+    if (largest !== null) pointAt(largest);
     body.update();
     const isOver = t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run));
     view.style.background = isOver ? "#fbe9e5" : "";
@@ -190,11 +198,11 @@ function show(t) {
   stage.draw();
 }
 
-const viewButtons = (bounds) => [
-  signButton("+", "Closer", () => stage.zoom(1.25)),
-  signButton("−", "Farther", () => stage.zoom(0.8)),
-  signButton("Reset view", "Show the whole scene", () => stage.look(bounds)),
-];
+byId("closer").addEventListener("click", () => stage.zoom(1.25));
+byId("farther").addEventListener("click", () => stage.zoom(0.8));
+byId("reset").addEventListener("click", () => scene && stage.look(scene.bounds));
+// The controls come back with a motion.
+section.replaceChildren();
 
 // Errors of the chart are those at the end. A run that blows up shows most while it is still in
 // the view: while its error is about as large as the motion.
@@ -207,7 +215,7 @@ function openingTime(run, until) {
 /** Draws the motion of the chosen run, or says why there is none. */
 export async function drawMotion() {
   const mine = ++turn;
-  player?.pause();
+  setPlaying(false);
   scene = null;
   const heading = element("h3", reference ? "Its motion beside the reference" : "Its motion");
   const say = (...nodes) => section.replaceChildren(heading, ...nodes.flat().filter(Boolean));
@@ -241,22 +249,24 @@ export async function drawMotion() {
   const bounds = boundsOf(frames[0]);
   const lift = liftOf(bounds);
   const hasDistances = frames.some((run) => run.distances);
-  const scale = hasDistances ? distanceScale(knownTo()) : null;
+  markUnknown(knownTo());
   const parts = frames.map((run, at) => ({ run, body: bodies[at], view: views[at] }));
-  scene = { parts, lift, scale, table: colorTable() };
+  scene = { parts, lift, bounds, table: colorTable() };
   const until = Math.max(...frames.map((run) => run.times.at(-1)));
   // A single frame has no time to go through.
-  player = until > 0 ? playerOf(until, show) : null;
-  const controls = player?.node ?? element("div.player");
-  controls.append(...viewButtons(bounds));
+  player.remove();
+  if (until > 0) {
+    startPlayer(until, show);
+    controls.prepend(player);
+  }
   const holder = element(views.length > 1 ? "div.views" : "div.views.alone", views);
-  say(above, holder, lost, controls, scale?.node, explanation(lift));
+  say(above, holder, lost, controls, hasDistances && scale, explanation(lift));
   const names = runs.map(({ label }) => label).join(" and ");
   stage.canvas.setAttribute("aria-label", `Motion of ${names}`);
   stage.show(holder, views, bodies);
   // The reader's own view stays from run to run.
   if (isFirst || !reference) stage.look(bounds);
-  (player?.go ?? show)(openingTime(frames.at(-1), until));
+  (until > 0 ? goTo : show)(openingTime(frames.at(-1), until));
   section.dataset.ready = state.run;
 }
 

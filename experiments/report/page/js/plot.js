@@ -21,10 +21,17 @@ export function powerOfTen(value) {
   return power === 0 || power === 1 ? String(10 ** power) : `1e${power}`;
 }
 
+/** The title of an axis. */
+export const axisTitle = (text, standoff, size) => ({
+  text: plainWords(text),
+  standoff,
+  font: { size },
+});
+
 /** A logarithmic axis over a range of positive numbers, with ticks at decades in given words. */
-export function decades(low, high, inWords = powerOfTen) {
+export function decades(low, high, inWords = powerOfTen, most = MOST_TICKS) {
   const [from, to] = [Math.log10(low), Math.log10(high)];
-  const every = Math.ceil((to - from) / MOST_TICKS);
+  const every = Math.ceil((to - from) / most);
   const ticks = [];
   for (let power = Math.ceil(from / every) * every; power <= to; power += every)
     ticks.push(Number(`1e${power}`));
@@ -61,28 +68,28 @@ export const ring = (x, y, size, xaxis = "x") => ({
 });
 
 /** Draws into an element, whose room may have changed: Plotly itself keeps the first. */
-export const plot = (drawing, traces, layout, config = {}) =>
-  Plotly.react(
-    drawing,
-    traces,
-    {
-      font: {
-        family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif",
-        size: 13,
-        color: INK,
-      },
-      paper_bgcolor: "#ffffff",
-      plot_bgcolor: "#ffffff",
-      showlegend: false,
-      hovermode: "closest",
-      hoverdistance: 16,
-      dragmode: matchMedia("(pointer: coarse)").matches ? false : "zoom",
-      width: drawing.clientWidth,
-      height: drawing.clientHeight,
-      ...layout,
-    },
-    { displayModeBar: false, showTips: false, doubleClick: "reset", ...config },
-  );
+export function plot(drawing, traces, layout, config = {}) {
+  const isFirst = !drawing.data;
+  const font = {
+    family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif",
+    size: 13,
+    color: INK,
+  };
+  const page = {
+    font,
+    paper_bgcolor: "#ffffff",
+    plot_bgcolor: "#ffffff",
+    showlegend: false,
+    hovermode: "closest",
+    hoverdistance: 16,
+    dragmode: matchMedia("(pointer: coarse)").matches ? false : "zoom",
+    width: drawing.clientWidth,
+    height: drawing.clientHeight,
+  };
+  const buttons = { displayModeBar: false, showTips: false, doubleClick: "reset" };
+  Plotly.react(drawing, traces, { ...page, ...layout }, { ...buttons, ...config });
+  if (isFirst) listenToMarks(drawing);
+}
 
 const MOST_COUNTS = 5;
 const box = byId("tooltip");
@@ -103,7 +110,7 @@ function content(point) {
 }
 
 // Shows the run beside a place of the window in px.
-function show(point, x, y) {
+function show(point, { clientX: x, clientY: y }) {
   box.replaceChildren(...content(point));
   box.dataset.point = point;
   box.hidden = false;
@@ -116,19 +123,13 @@ function show(point, x, y) {
 const hide = () => (box.hidden = true);
 addEventListener("scroll", hide, { passive: true });
 
-/** Lets the marks of one of Plotly's drawings show their run on hover and choose it on a click. */
-export function listenToMarks(drawing) {
+// Lets the marks of a drawing show their run on hover and choose it on a click.
+function listenToMarks(drawing) {
   const withRun = (act) => (event) => {
     const point = event.points?.map((mark) => mark.customdata).find(Number.isInteger);
     if (point !== undefined) act(point, event.event);
   };
-  drawing.on(
-    "plotly_hover",
-    withRun((point, { clientX, clientY }) => show(point, clientX, clientY)),
-  );
+  drawing.on("plotly_hover", withRun(show));
   drawing.on("plotly_unhover", hide);
-  drawing.on(
-    "plotly_click",
-    withRun((point) => visit({ run: point })),
-  );
+  drawing.on("plotly_click", withRun((point) => visit({ run: point })));
 }

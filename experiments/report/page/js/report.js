@@ -17,11 +17,13 @@ export const runsOf = methods.map((_, method) =>
     .sort((a, b) => points.value[b] - points.value[a]),
 );
 
-/** The families as {title, members}. */
-export const families = report.families.map(({ title }, family) => ({
-  title,
-  members: [...methods.keys()].filter((method) => methods[method].family === family),
-}));
+/** The families that have methods, as {title, members}. */
+export const familiesWithMethods = report.families
+  .map(({ title }, family) => ({
+    title,
+    members: [...methods.keys()].filter((method) => methods[method].family === family),
+  }))
+  .filter(({ members }) => members.length);
 
 // The kind of error in a column.
 const quantityOf = (column) => report.quantities.find((one) => one.column === column);
@@ -72,11 +74,8 @@ export const ordinates = [
 function openingRun() {
   const answers = report.answers.map(({ point }) => point).filter((point) => point !== null);
   const kept = keptRuns.map(({ point }) => point);
-  return (
-    [answers.find((point) => kept.includes(point)), kept[0], answers[0], allRuns[0]].find(
-      (point) => point !== undefined,
-    ) ?? null
-  );
+  const known = answers.find((point) => kept.includes(point));
+  return known ?? kept[0] ?? answers[0] ?? allRuns[0] ?? null;
 }
 
 function addressed(hash) {

@@ -1,11 +1,11 @@
 // The menus that choose a run, its head, and its figures.
-import { byId, commandLine, definitions, element, menuOf, options, signButton } from "./element.js";
+import { byId, commandLine, definitions, element, options } from "./element.js";
 import { swatch } from "./marks.js";
 import {
   choose,
   chosenQuantity,
   countsOf,
-  families,
+  familiesWithMethods,
   keptMotion,
   knobOf,
   methods,
@@ -25,20 +25,18 @@ const PHASES = {
 };
 const TIMES = { time_s: "time of a run, median", time_min_s: "fastest of them", setup_s: "set-up" };
 
-const methodMenu = menuOf([], (method) => choose({ run: middleRun(Number(method)) }));
+const methodMenu = byId("run-method");
+const runMenu = byId("run-knob");
+
 methodMenu.append(
-  ...families.map(({ title: label, members }) =>
+  ...familiesWithMethods.map(({ title: label, members }) =>
     element("optgroup", { label }, options(members.map((one) => [one, methods[one].name]))),
   ),
 );
-const runMenu = menuOf([], (run) => choose({ run: Number(run) }));
-
-byId("run-choice").append(
-  element("label", "Method ", methodMenu),
-  element("label", "Run ", runMenu),
-  signButton("◀", "Coarser run", () => step(-1)),
-  signButton("▶", "Finer run", () => step(1)),
-);
+methodMenu.addEventListener("change", () => choose({ run: middleRun(Number(methodMenu.value)) }));
+runMenu.addEventListener("change", () => choose({ run: Number(runMenu.value) }));
+byId("coarser").addEventListener("click", () => step(-1));
+byId("finer").addEventListener("click", () => step(1));
 
 // The middle of a method's runs that gave a point.
 function middleRun(method) {

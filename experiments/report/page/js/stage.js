@@ -189,13 +189,6 @@ export function stageOf(dimension, lost) {
     draw();
   }
 
-  // Takes a view of another shape, which shows no less when it is narrower.
-  function fit(width, height) {
-    eye.aspect = width / height;
-    eye.zoom = Math.min(1, eye.aspect / aspect);
-    eye.updateProjectionMatrix();
-  }
-
   function drawNow() {
     asked = false;
     const { width, height } = holder.getBoundingClientRect();
@@ -210,7 +203,10 @@ export function stageOf(dimension, lost) {
       const corner = [offsetLeft + 1, holder.clientHeight - offsetTop - clientHeight - 1];
       renderer.setViewport(...corner, clientWidth, clientHeight);
       renderer.setScissor(...corner, clientWidth, clientHeight);
-      fit(clientWidth, clientHeight);
+      // A view of another shape shows no less when it is narrower.
+      eye.aspect = clientWidth / clientHeight;
+      eye.zoom = Math.min(1, eye.aspect / aspect);
+      eye.updateProjectionMatrix();
       renderer.render(bodies[index].scene, eye);
     });
     holder.dataset.draws = Number(holder.dataset.draws ?? 0) + 1;

@@ -1,7 +1,5 @@
 // Numbers in words, as the pictures of the experiments write them.
 
-const KNOBS = { step_size: "step size h", rtol: "tolerance rtol" };
-
 /** Whether a number was measured. */
 export const isKnown = Number.isFinite;
 
@@ -21,7 +19,7 @@ function about(value) {
   return `about ${number(rough)}`;
 }
 
-/** A number to as many digits as its file holds, for knobs: 0.0005, 6.17e-5. */
+/** A number to four digits: 0.0005, 6.17e-5. */
 function exact(value) {
   if (!isKnown(value)) return "–";
   const digits = Number(value.toPrecision(4));
@@ -64,9 +62,6 @@ function ratio(value) {
 /** A column's or an outcome's name in words: "force evaluations". */
 const plain = (name) => name.replaceAll("_", " ");
 
-/** The title of a knob at an axis: "step size h". */
-const knobTitle = (name) => KNOBS[name] ?? plain(name);
-
 export const words = {
   number,
   about,
@@ -75,6 +70,5 @@ export const words = {
   count,
   things,
   ratio,
-  knobTitle,
   plain,
 };

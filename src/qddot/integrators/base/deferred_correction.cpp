@@ -1,7 +1,6 @@
 #include "qddot/integrators/base/deferred_correction.hpp"
 
 #include <span>
-#include <vector>
 
 #include "qddot/model/vector_updates.hpp"
 

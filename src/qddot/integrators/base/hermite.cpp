@@ -1,6 +1,5 @@
 #include "qddot/integrators/base/hermite.hpp"
 
-#include <array>
 #include <cassert>
 
 namespace qddot {

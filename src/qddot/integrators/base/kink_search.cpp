@@ -1,6 +1,5 @@
 #include "qddot/integrators/base/kink_search.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace qddot {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Core>
 #include <Eigen/LU>
 
 #include "qddot/algebra/dense_pairs.hpp"

@@ -7,7 +7,6 @@
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/motion/interruption.hpp"
-#include "qddot/measure/motion/timing.hpp"
 
 namespace qddot::inline measure {
 namespace {

@@ -1,6 +1,5 @@
 #include "qddot/measure/advice/solve.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -10,7 +9,6 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
-#include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/model/machine_epsilon.hpp"

@@ -1,7 +1,6 @@
 #include "qddot/measure/reference/reference_ways.hpp"
 
 #include <cmath>
-#include <vector>
 
 #include <boost/numeric/odeint.hpp>
 #include <fmt/format.h>

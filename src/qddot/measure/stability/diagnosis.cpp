@@ -1,7 +1,6 @@
 #include "qddot/measure/stability/diagnosis.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "qddot/model/kernels/level.hpp"
 
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 
 namespace qddot::kernels {

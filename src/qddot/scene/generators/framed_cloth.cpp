@@ -1,7 +1,6 @@
 // The cloth in a stiff frame: the structural springs along its four borders. They alone bound the
 // step of explicit methods, some thirty times below the cloth's own bound.
 #include <algorithm>
-#include <cmath>
 
 #include "qddot/scene/generators/cloth_grid.hpp"
 #include "qddot/scene/generators/ranges.hpp"

@@ -7,8 +7,6 @@
 #include <span>
 #include <tuple>
 
-#include <Eigen/Core>
-
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 

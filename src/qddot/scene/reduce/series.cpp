@@ -1,7 +1,5 @@
 #include "qddot/scene/reduce/series.hpp"
 
-#include <optional>
-
 namespace qddot::reduce {
 namespace {
 

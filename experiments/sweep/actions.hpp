@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+// Actions of sweep, in the folder of a sweep. Those that return an int
+// return the exit status.
+namespace qddot::sweep {
+
+// Plans the study of a file: writes its tasks, and scene files that it asks for, into the folder
+// `out`, and prints how many there are. Throws InvalidInput, in the program's own words, if it does
+// not take a scene, a method or an option, and if there would be too many tasks.
+int plan(const std::string& study_path, const std::string& out);
+
+// Tasks of a sweep.
+struct TaskChoice {
+  std::string stage;   // references or points
+  std::string shard;   // I/N, one of N shards of the stage; empty: all
+  std::string task;    // the id of a single one; may be empty
+  bool again = false;  // also those that another kind of machine has measured
+};
+
+// Measures these tasks, unless they are done, one after the other, each in a process of its own,
+// and prints how many came to which end. Throws InvalidInput for a wrong shard or id, and
+// Interrupted if the work is to end; the present task keeps its points.
+int run_tasks(const std::string& folder, const TaskChoice& choice);
+
+// How results of several processes become one.
+struct Merging {
+  bool per_machine = false;  // a folder for each kind of machine
+  bool by_work = false;      // counts times costs on this machine in place of the times
+  bool has_pictures = true;
+};
+
+// Makes, from the results of the tasks, for each scene a folder of its name with the outputs of the
+// study's program (tables, a chart, a report). If the program is work_precision, also makes
+// fastest.csv, crossovers.csv and a picture of them from the points.csv of all scenes. missing.csv
+// and stdout name missing results, the reason, and the command that measures them. Throws
+// InvalidInput if times of unlike machines would be compared.
+int merge(const std::string& folder, const Merging& how);
+
+}  // namespace qddot::sweep
