@@ -2,25 +2,25 @@
 """Runs a study as jobs of a Slurm cluster, one of whose nodes dies in the middle, and compares the
 points with those of one process.
 
-  tests/cluster/with_cluster /usr/bin/python3 -B tests/cluster/check_cluster.py --bin build/bin
+  tests/cluster/with_cluster /usr/bin/python3 -B tests/cluster/check_cluster.py
 
 `sweep submit` makes an array of jobs for the references, one for the points and a job that merges.
 While a job of the points runs on node2, that node and all that runs there is killed. Slurm has to
 requeue the job; the node comes back; the queue has to become empty. All columns but measured times
-have to be equal, to the digit. Status 1: something was found.
+have to be equal, to the digit. The programs are in the folder QDDOT_BIN. Status 1: something was
+found.
 """
 
-import argparse
 import concurrent.futures
-import csv
 import glob
-import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
 import time
+
+from programs import header, table, words_of, write
 
 # No run of these methods comes near the limit of time, so that no point depends on the machine's
 # speed. All of them are of order 2 or more: others need billions of steps for the last digits.
@@ -31,19 +31,16 @@ symmetric8 symmetric10 dprkn6 dprkn8 dprkn12 linear_midpoint linear_midpoint4 ar
 arkode_dirk4 arkode_dirk5 arkode_dirk3_klu arkode_dirk4_klu arkode_dirk5_klu arkode_erk3 arkode_erk4
 arkode_erk5 arkode_erk6 arkode_erk8 ida ida_klu cvode_bdf cvode_bdf_klu cvode_adams
 """.split()
-UNTIL = "0.02"
-SCENES = {
-    "pendulum": None,
-    "chain": '[generator]\nkind = "chain"\nnodes = 8\n',
-}
+MEASURES = f"--until 0.02 --methods {','.join(METHODS)} --point-limit 60 --repeats 1"
+SCENES = {"pendulum": "pendulum", "chain": "chain.toml"}
+CHAIN = '[generator]\nkind = "chain"\nnodes = 8\n'
 STUDY = f"""scenes = ["pendulum", {{ generator = "chain", nodes = 8 }}]
-until = {UNTIL}
-methods = {json.dumps(METHODS)}
+until = 0.02
+methods = {METHODS}
 [options]
 point-limit = 60
 repeats = 1
 """
-OPTIONS = f"--methods {','.join(METHODS)} --point-limit 60 --repeats 1 --progress none".split()
 SHARDS = 4
 NODE = "node2"
 MEASURED = {"time_s", "time_min_s", "setup_s", "timed_runs"}
@@ -58,9 +55,9 @@ def seconds_since(start):
     return f"{time.monotonic() - start:.1f} s"
 
 
-def said_by(argv, **more):
+def said_by(argv):
     """What a command prints; a Fault where it fails."""
-    done = subprocess.run(argv, capture_output=True, text=True, **more)
+    done = subprocess.run(argv, capture_output=True, text=True)
     if done.returncode != 0:
         said = done.stdout[-2000:] + done.stderr[-2000:]
         raise Fault(f"{' '.join(argv)}: status {done.returncode}\n{said}")
@@ -164,32 +161,24 @@ def jobs_that_failed(ids):
 
 
 def points_in(path):
-    """A table's points by scene, method, knob and value, without measured times; its columns."""
-    with open(path, encoding="utf-8", newline="") as file:
-        table = csv.DictReader(file)
-        points = {}
-        for row in table:
-            key = (row["scene"], row["method"], row["knob"], row["value"])
-            if key in points:
-                raise Fault(f"{path}: {' '.join(key)} is there twice")
-            points[key] = {name: row[name] for name in row if name not in MEASURED}
-        return points, table.fieldnames
+    """A table's points by scene, method, knob and value, without measured times."""
+    points = {}
+    for row in table(path):
+        key = tuple(str(row[name]) for name in ("scene", "method", "knob", "value"))
+        if key in points:
+            raise Fault(f"{path}: {' '.join(key)} is there twice")
+        points[key] = {name: row[name] for name in row if name not in MEASURED}
+    return points
 
 
-def in_one_process(programs, place):
-    """Runs the study's scenes without a cluster; the points and the columns."""
-    points, columns = {}, None
-    for name, text in SCENES.items():
-        scene, out = name, os.path.join(place, "one", name)
-        if text:
-            scene = os.path.join(place, f"{name}.toml")
-            with open(scene, "w", encoding="utf-8") as file:
-                file.write(text)
-        program = os.path.join(programs, "work_precision")
-        said_by([program, "--scene", scene, "--until", UNTIL, *OPTIONS, "--out", out])
-        more, columns = points_in(os.path.join(out, "points.csv"))
-        points.update(more)
-    return points, columns
+def in_one_process():
+    """Runs the study's scenes without a cluster; the points and the header of their table."""
+    points = {}
+    for name, scene in SCENES.items():
+        line = f"work_precision --scene {scene} {MEASURES} --progress none --out one/{name}"
+        said_by(words_of(line))
+        points |= points_in(f"one/{name}/points.csv")
+    return points, header(f"one/{name}/points.csv")
 
 
 def differences(one, many):
@@ -199,17 +188,13 @@ def differences(one, many):
             yield f"{' '.join(key)}: {one.get(key)} in one process, {many.get(key)} in the cluster"
 
 
-def check(programs, script, place):
-    """Runs all, printing the seconds of each part; a Fault where something is wrong."""
-    sweep, study = os.path.join(programs, "sweep"), os.path.join(place, "study.toml")
-    folder = os.path.join(place, "S")
-    with open(study, "w", encoding="utf-8") as file:
-        file.write(STUDY)
+def check(script):
+    """Runs all here, printing the seconds of each part; a Fault where something is wrong."""
+    write("study.toml", STUDY)
+    write("chain.toml", CHAIN)
     start = time.monotonic()
-    said_by([sweep, "plan", study, "--out", folder], cwd=place)
-    submitted = said_by(
-        [sweep, "submit", folder, "--slurm", "--shards", str(SHARDS), "--go"], cwd=place
-    )
+    said_by(words_of("sweep plan study.toml --out S"))
+    submitted = said_by(words_of(f"sweep submit S --slurm --shards {SHARDS} --go"))
     jobs = queue()
     ids = sorted({re.match(r"\d+", job).group() for job, _, _, _ in jobs}, key=int)
     unsaid = [job for job in ids if not re.search(rf"\b{job}\b", submitted)]
@@ -222,7 +207,7 @@ def check(programs, script, place):
     print(f"until {NODE} was killed in the middle of points: {seconds_since(start)}", flush=True)
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         # The core of the node that is dead is free.
-        alone = pool.submit(in_one_process, programs, place)
+        alone = pool.submit(in_one_process)
         start = time.monotonic()
         fields = wait_for(120, f"a requeue of {job}", lambda: requeued(job, restarts))
         print(
@@ -237,15 +222,12 @@ def check(programs, script, place):
         one, columns = alone.result()
 
     found = jobs_that_failed(ids)
-    merged = os.path.join(folder, "points.csv")
-    if not os.path.exists(merged):
+    if not os.path.exists("S/points.csv"):
         raise Fault("\n".join(["there is no points.csv", *found]))
-    many, columns_of_many = points_in(merged)
-    if columns_of_many != columns:
-        found.append(f"the columns are {columns_of_many} in the cluster, {columns} in one process")
-    found += differences(one, many)
-    parts = glob.glob(os.path.join(folder, "**", "*.part"), recursive=True)
-    found += [f"{os.path.relpath(part, folder)} is left" for part in parts]
+    if header("S/points.csv") != columns:
+        found.append(f"{columns} in one process, in the cluster {header('S/points.csv')}")
+    found += differences(one, points_in("S/points.csv"))
+    found += [f"{part} is left" for part in glob.glob("S/**/*.part", recursive=True)]
     if not one:
         found.append("there is no point")
     if found:
@@ -253,16 +235,15 @@ def check(programs, script, place):
     print(f"{len(one)} points of {len(SCENES)} scenes, all equal", flush=True)
 
 
-def tell_more(programs, place):
+def tell_more():
     """Prints what Slurm and the study say of themselves."""
-    folder = os.path.join(place, "S")
     logs = glob.glob(os.path.join(os.path.dirname(os.environ["SLURM_CONF"]), "*.log"))
-    for path in sorted(logs + glob.glob(os.path.join(folder, "log", "*"))):
+    for path in sorted(logs + glob.glob("S/log/*")):
         subprocess.run(["tail", "-v", "-n", "30", path], check=False)
     for argv in (
         ["squeue", "--array"],
         ["sinfo", "--Node", "--long"],
-        [os.path.join(programs, "sweep"), "status", folder],
+        words_of("sweep status S"),
     ):
         print(f"--- {' '.join(argv)}", flush=True)
         subprocess.run(["timeout", "30", *argv], check=False)
@@ -270,11 +251,6 @@ def tell_more(programs, place):
 
 def main():
     """Status 0: all is equal; 1: something was found; 2: it cannot be tried."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--bin", required=True, help="the folder of the programs")
-    programs = os.path.abspath(parser.parse_args().bin)
     script = os.environ.get("CLUSTER_SCRIPT")
     if not script or "SLURM_CONF" not in os.environ:
         sys.exit("check_cluster: this runs inside of with_cluster only")
@@ -282,11 +258,12 @@ def main():
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", LC_ALL="C.UTF-8")
     start = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="check_cluster.") as place:
+        os.chdir(place)
         try:
-            check(programs, script, place)
+            check(script)
         except Fault as fault:
             print(f"check_cluster: {fault}")
-            tell_more(programs, place)
+            tell_more()
             return 1
     print(f"all of this: {seconds_since(start)}")
     return 0

@@ -1,16 +1,12 @@
 """The pages of methods: a new method gets one by itself, and one that says too little is refused."""
 
-import sys
 import unittest
-from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "docs/site"))
-import method_formula  # noqa: E402
-import method_pages  # noqa: E402
-import page_data  # noqa: E402
-import render  # noqa: E402
+import method_formula
+import method_pages
+import page_data
+import render
 
 FORMULA = "// A new method:\n//   q' = q + h v\n// It has order 1.\n\nMethod newest() {\n}\n"
 
@@ -64,7 +60,3 @@ class Formula(unittest.TestCase):
             "One\\_two of `a_b`:\n\n```text\nx = y * z\n  + w\n```\n\nand \\< three.\n\nFour.",
             method_formula.as_markdown(lines),
         )
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,23 +1,18 @@
 """The pages of docs/ and README.md: what they say is measured, their links lead somewhere, their samples
 run, and their sentences are short."""
 
-import csv
-import io
-import os
 import re
 import subprocess
-import sys
 import tempfile
 import tomllib
 import unittest
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-BIN = Path(os.environ["QDDOT_BIN"])
-sys.path.insert(0, str(ROOT / "docs/site"))
-import study as entries  # noqa: E402
-import page_text  # noqa: E402
+import page_text
+import study as entries
+from programs import BIN, rows_of, run
 
+ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 METHOD_PAGES = sorted((ROOT / "docs/methods").glob("*.md"))
 TEMPLATES = sorted((ROOT / "docs/pages").glob("*.md"))
@@ -28,13 +23,6 @@ MOST_WORDS, MOST_ON_AVERAGE = 40, 25
 def named(page):
     """The path of a page as a message shows it."""
     return page.relative_to(ROOT).as_posix()
-
-
-def program(*words, **options):
-    """Runs a program of this build."""
-    return subprocess.run(
-        [BIN / words[0], *words[1:]], capture_output=True, text=True, check=False, **options
-    )
 
 
 def blocks(text, language):
@@ -132,9 +120,9 @@ class Samples(unittest.TestCase):
             file.write_text(block, encoding="utf-8")
             if "scenes" in content:
                 (Path(folder) / "my.toml").write_text('[generator]\nkind = "chain"\n')
-                done = program("sweep", "plan", file, "--out", Path(folder) / "S")
+                done = run(["sweep", "plan", file, "--out", Path(folder) / "S"])
             elif content.keys() & {"nodes", "generator"} and "mesh" not in content:
-                done = program("simulate", "--scene", file, "--explain")
+                done = run(["simulate", "--scene", file, "--explain"])
             else:
                 return
             self.assertEqual(0, done.returncode, done.stderr)
@@ -158,14 +146,14 @@ class Samples(unittest.TestCase):
         if line.startswith("./run"):
             self.assertRegex(usage, rf"(?m)^  {name[1]}\b")
             return
-        if not (BIN / name[1]).exists():  # one that only some builds have
+        if not Path(BIN, name[1]).exists():  # one that only some builds have
             self.assertIn(name[1], {"bench"})
             return
         if name[1] not in helps:
-            helps[name[1]] = program(name[1], "--help").stdout
+            helps[name[1]] = run([name[1], "--help"]).stdout
         words = re.match(r"\S+ (plan|run|merge|submit|status)\b", line)
         if name[1] == "sweep" and words:
-            helps[name[1]] = program("sweep", words[1], "--help").stdout
+            helps[name[1]] = run(["sweep", words[1], "--help"]).stdout
             if words[1] == "submit":
                 return  # what follows belongs to another scheduler
         for option in re.findall(r"\s(--[a-z-]+)", line):
@@ -174,10 +162,6 @@ class Samples(unittest.TestCase):
 
 class Methods(unittest.TestCase):
     def test_each_has_a_page(self):
-        printed = program("simulate", "--list-methods", "--csv").stdout
-        names = {row["name"] for row in csv.DictReader(io.StringIO(printed))}
+        printed = run("simulate --list-methods --csv").stdout
+        names = {row["name"] for row in rows_of(printed)}
         self.assertEqual(names, {page.stem for page in METHOD_PAGES})
-
-
-if __name__ == "__main__":
-    unittest.main()

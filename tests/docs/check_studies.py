@@ -5,18 +5,15 @@ import contextlib
 import io
 import json
 import math
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "docs/site"))
-import chart_data  # noqa: E402
-import page_data  # noqa: E402
-import study as entries  # noqa: E402
-import studies  # noqa: E402
+import chart_data
+import page_data
+import study as entries
+import studies
 
 
 class Studies(unittest.TestCase):
@@ -139,7 +136,3 @@ class Words(unittest.TestCase):
         # An advantage that is lost again is none.
         lost = {1: (2, 1), 10: (2, 1), 100: (1, 2), 1000: (2, 1)}
         self.assertAlmostEqual(math.sqrt(1e5), self.crossing_of(lost), 6)
-
-
-if __name__ == "__main__":
-    unittest.main()

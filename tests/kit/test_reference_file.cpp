@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(a_file_that_is_not_as_it_was_written_is_not_believed) {
     BOOST_TEST(again.energy == made.energy);
   }
   // Cut short, or without a checksum.
-  for (const std::string& text : {whole.substr(0, whole.size() / 2), [&] {
+  for (const std::string& text : {std::string(), whole.substr(0, whole.size() / 2), [&] {
                                     nlohmann::json json = nlohmann::json::parse(whole);
                                     json.erase("checksum");
                                     return json.dump();
@@ -157,6 +157,7 @@ BOOST_AUTO_TEST_CASE(negative_control_another_motion_has_another_file) {
   BOOST_TEST(orbit.end.q.size() == 2);
   const auto json = nlohmann::json::parse(read_all(folder / "reference.json"));
   BOOST_TEST(json.at("scene") == "pair");
+  BOOST_TEST(kept("pair", 2 * until, folder).end.t == 2 * until);
 }
 
 BOOST_AUTO_TEST_CASE(a_massless_node_has_no_reference) {

@@ -1,15 +1,11 @@
-#!/usr/bin/python3
-"""Reads .pc2 files of simulate and the .obj beside them back, by struct alone.
+"""Reads .pc2 files of simulate and the .obj beside them back, by struct alone."""
 
-Call: check_pc2.py --bin FOLDER.
-"""
-
-import json
 import struct
 
 import numpy as np
 
-from motion_case import DIVERGING, FLOAT, assert_close, run_words, tried_place
+from motion_case import DIVERGING, FLOAT, Motions, assert_close, run_words
+from programs import sidecar
 
 HEADER = struct.Struct("<12siiffi")
 
@@ -36,47 +32,34 @@ def read_obj(path):
     return np.array(found["v"], "f4"), found["f"], found["l"]
 
 
-def check_scene(place, name, faces, springs):
-    """The samples against the table, the .obj against the first sample."""
-    _, positions, _ = place.table_of(run_words(name, f"--motion {name}.pc2"))
-    samples = read_pc2(place.path(name + ".pc2"))
-    assert_close(samples, positions, FLOAT)
-    vertices, found_faces, found_springs = read_obj(place.path(name + ".obj"))
-    assert np.array_equal(vertices, samples[0])
-    assert (len(found_faces), len(found_springs)) == (faces, springs)
-    with open(place.path(name + ".pc2.json"), encoding="utf-8") as file:
-        assert json.load(file)["outcome"] == "reached_end"
-    return found_faces, found_springs
+class PointCaches(Motions):
+    def faces_and_springs(self, name):
+        """The cells of the .obj; samples are held against the table, vertices against the first."""
+        _, positions, _ = self.table_of(run_words(name, f"--motion {name}.pc2"))
+        samples = read_pc2(name + ".pc2")
+        assert_close(samples, positions, FLOAT)
+        vertices, faces, springs = read_obj(name + ".obj")
+        assert np.array_equal(vertices, samples[0])
+        self.assertEqual(sidecar(name + ".pc2.json")["outcome"], "reached_end")
+        return faces, springs
 
+    def test_scenes_of_every_kind(self):
+        for name, faces, springs in ("cloth", 32, 102), ("plane", 0, 3):
+            self.assertEqual(tuple(map(len, self.faces_and_springs(name))), (faces, springs))
+        self.assertEqual(self.faces_and_springs("massless"), ([], [[0, 1], [1, 2]]))
+        self.assertEqual(self.faces_and_springs("line"), ([], [[0, 1]]))
+        faces, springs = self.faces_and_springs("meshed")
+        self.assertEqual(faces, [[0, 1, 2], [0, 2, 3]])
+        self.assertEqual(sorted(map(sorted, springs)), [[0, 1], [0, 3], [1, 2], [2, 3]])
 
-def check_failed_run(place):
-    """A run that grows without bound leaves the samples that are numbers, and counts them."""
-    _, positions, _ = place.table_of(f"{DIVERGING} --motion bad.pc2", status=3)
-    samples = read_pc2(place.path("bad.pc2"))
-    assert 1 < len(samples) <= len(positions) and np.isfinite(samples).all()
-    assert_close(samples, positions[: len(samples)], FLOAT)
+    def test_a_run_that_grows_without_bound_leaves_the_samples_that_are_numbers(self):
+        _, positions, _ = self.table_of(f"{DIVERGING} --motion bad.pc2", status=3)
+        samples = read_pc2("bad.pc2")
+        assert 1 < len(samples) <= len(positions) and np.isfinite(samples).all()
+        assert_close(samples, positions[: len(samples)], FLOAT)
 
-
-def check_accuracy(place):
-    """An answer (--accuracy) writes a motion as well, from its start to its end."""
-    words = "--scene oscillator --accuracy 1e-3 --until 0.5 --every 0.1 --motion a.pc2"
-    _, positions, _ = place.table_of(words)
-    assert len(positions) == 6
-    assert_close(read_pc2(place.path("a.pc2")), positions, FLOAT)
-
-
-def main():
-    with tried_place(__doc__) as place:
-        check_scene(place, "cloth", 32, 102)
-        check_scene(place, "plane", 0, 3)
-        assert check_scene(place, "massless", 0, 2) == ([], [[0, 1], [1, 2]])
-        assert check_scene(place, "line", 0, 1) == ([], [[0, 1]])
-        faces, springs = check_scene(place, "meshed", 2, 4)
-        assert faces == [[0, 1, 2], [0, 2, 3]]
-        assert sorted(map(sorted, springs)) == [[0, 1], [0, 3], [1, 2], [2, 3]]
-        check_failed_run(place)
-        check_accuracy(place)
-
-
-if __name__ == "__main__":
-    main()
+    def test_an_answer_writes_a_motion_from_its_start_to_its_end(self):
+        words = "--scene oscillator --accuracy 1e-3 --until 0.5 --every 0.1 --motion a.pc2"
+        _, positions, _ = self.table_of(words)
+        self.assertEqual(len(positions), 6)
+        assert_close(read_pc2("a.pc2"), positions, FLOAT)

@@ -1,29 +1,18 @@
-#!/usr/bin/python3
-"""Reads .vtkhdf files of simulate back: layout, values, virtual datasets and the .xdmf.
+"""Reads .vtkhdf files of simulate back: layout, values, virtual datasets and the .xdmf."""
 
-Call: check_vtkhdf.py --bin FOLDER.
-"""
-
-import json
-import os
+import glob
 import tomllib
 
 import h5py
 import numpy as np
 
 from motion_case import (
-    DIVERGING, FLOAT, SHORT, assert_close, mixed_cells, run_words, tried_place, xdmf_frames,
+    DIVERGING, FLOAT, SHORT, Motions, assert_close, mixed_cells, run_words, xdmf_frames,
 )  # fmt: skip
+from programs import node, read, scene, sidecar, spring, write
 
 FIELDS = ["kinetic_energy", "velocity"]
 KINDS = {"Vertices": 1, "Lines": 2, "Polygons": 3, "Strips": 1}
-
-
-def scene_of(place, name):
-    """Nodes and springs as --write-scene gives them."""
-    place.run(f"--scene {name}.toml --write-scene {name}.written.toml")
-    with open(place.path(f"{name}.written.toml"), "rb") as file:
-        return tomllib.load(file)
 
 
 def cells_of(root, kind):
@@ -66,32 +55,32 @@ def check_layout(root, frames, nodes, cells):
         assert steps["CellDataOffsets"][name][...].tolist() == [k * cells for k in range(frames)]
 
 
-def strains_of(scene, positions):
+def strains_of(drawn, positions):
     """(l - length) / length, by the rest length or, where it is zero, the length at the start."""
-    result = np.zeros((len(positions), len(scene["springs"])))
-    for k, spring in enumerate(scene["springs"]):
-        a, b = spring["nodes"]
+    result = np.zeros((len(positions), len(drawn["springs"])))
+    for k, one in enumerate(drawn["springs"]):
+        a, b = one["nodes"]
         lengths = np.linalg.norm(positions[:, b] - positions[:, a], axis=1)
-        by = spring["rest_length"] or lengths[0]
+        by = one["rest_length"] or lengths[0]
         if by > 0:
             result[:, k] = (lengths - by) / by
     return result
 
 
-def check_strains(found, scene, positions, first_line):
+def check_strains(found, drawn, positions, first_line):
     """Strain is a difference of lengths, so that their rounding (17 digits in the table, whole
     doubles in the run: some 1e-15) counts beside that of the number itself.
     """
-    wanted = strains_of(scene, positions)
+    wanted = strains_of(drawn, positions)
     lines = found[:, first_line : first_line + wanted.shape[1]]
     assert (np.abs(lines - wanted) <= SHORT * np.abs(wanted) + 1e-14).all()
     assert not found[:, :first_line].any() and not found[:, first_line + wanted.shape[1] :].any()
 
 
-def check_frames(place, stem, root_file, times):
+def check_frames(stem, root_file, times):
     """The virtual datasets are the rows, and the .xdmf names them whole."""
     root = root_file["VTKHDF"]
-    frames = xdmf_frames(place.path(stem + ".xdmf"))
+    frames = xdmf_frames(stem + ".xdmf")
     assert [time for time, _ in frames] == times.tolist()
     data = {"Points": root["Points"], **root["PointData"], **root["CellData"]}
     for k, (_, found) in enumerate(frames):
@@ -107,38 +96,6 @@ def check_frames(place, stem, root_file, times):
         assert mixed_cells(found["Topology"]) == wanted
 
 
-def check_scene(place, name, faces, loose):
-    """All of a motion against the table of the same run."""
-    stem = "m_" + name
-    times, positions, velocities = place.table_of(run_words(name, f"--motion {stem}.vtkhdf"))
-    scene = scene_of(place, name)
-    frames, nodes = positions.shape[:2]
-    with h5py.File(place.path(stem + ".vtkhdf")) as file:
-        root = file["VTKHDF"]
-        springs = [tuple(spring["nodes"]) for spring in scene["springs"]]
-        assert cells_of(root, "Lines") == springs
-        assert cells_of(root, "Polygons") == faces
-        assert cells_of(root, "Vertices") == [(node,) for node in loose]
-        assert cells_of(root, "Strips") == []
-        check_layout(root, frames, nodes, len(loose) + len(springs) + len(faces))
-        assert np.array_equal(root["Steps/Values"][...], times)
-        assert_close(root["Points"][...].reshape(positions.shape), positions, FLOAT)
-        assert sorted(root["PointData"]) == FIELDS
-        assert_close(root["PointData/velocity"][...].reshape(velocities.shape), velocities, SHORT)
-        masses = [0 if node.get("pinned") else node["mass"] for node in scene["nodes"]]
-        energies = 0.5 * np.array(masses) * (velocities**2).sum(axis=2)
-        # Squares and sums round in doubles, far below SHORT.
-        assert_close(
-            root["PointData/kinetic_energy"][...].reshape(frames, nodes), energies, SHORT * 1.0001
-        )
-        check_strains(
-            root["CellData/strain"][...].reshape(frames, -1), scene, positions, len(loose)
-        )
-        check_frames(place, stem, file, times)
-    with open(place.path(stem + ".vtkhdf.json"), encoding="utf-8") as file:
-        assert json.load(file)["outcome"] == "reached_end"
-
-
 def cloth_faces(n):
     cells = [(i, j) for i in range(n - 1) for j in range(n - 1)]
     at = lambda i, j: i * n + j
@@ -149,96 +106,104 @@ def cloth_faces(n):
     return faces
 
 
-def check_fields(place):
-    """--motion-fields leaves out what is not named."""
-    place.run(run_words("cloth", "--motion f.vtkhdf --motion-fields strain"))
-    with h5py.File(place.path("f.vtkhdf")) as file:
-        assert list(file["VTKHDF/PointData"]) == [] and list(file["VTKHDF/CellData"]) == ["strain"]
-    place.run(run_words("cloth", "--motion f.vtkhdf --motion-fields none"))
-    with h5py.File(place.path("f.vtkhdf")) as file:
-        assert list(file["VTKHDF/CellData"]) == []
-        assert sorted(file["Frames/000000"]) == ["Points"]
-
-
-def check_many_frames(place):
-    """Frames fill several chunks, the last one in part."""
-    words = "--scene pair --method verlet --step-size 1e-3 --until 9 --every 2e-3"
-    _, positions, velocities = place.table_of(words + " --motion many.vtkhdf")
-    with h5py.File(place.path("many.vtkhdf")) as file:
-        points = file["VTKHDF/Points"]
-        assert len(points) > 2 * points.chunks[0] and len(points) % points.chunks[0] > 0
-        assert_close(points[...].reshape(positions.shape), positions, FLOAT)
-        assert_close(
-            file["VTKHDF/PointData/velocity"][...].reshape(velocities.shape), velocities, SHORT
-        )
-        assert_close(file["Frames/004500/Points"][...], positions[-1], FLOAT)
-
-
 def large_scene(n):
     """A net of n x n nodes that all move differently, so that no two strains are equal."""
     velocities = np.random.default_rng(1).uniform(-0.1, 0.1, (n * n, 3)).tolist()
-    nodes = [
-        f"{{position = [{k // n}.0, {k % n}.0, 0.0], velocity = {velocity}, mass = 1.0}}"
-        for k, velocity in enumerate(velocities)
-    ]
-    ends = [
-        [i * n + j, (i + di) * n + j + dj]
+    nodes = [node(k // n, k % n, 0, velocity=v, mass=1) for k, v in enumerate(velocities)]
+    springs = [
+        spring(i * n + j, (i + di) * n + j + dj, 100)
         for i in range(n)
         for j in range(n)
         for di, dj in [(1, 0), (0, 1), (1, 1)]
         if i + di < n and j + dj < n
     ]
-    springs = [f"{{nodes = {pair}, stiffness = 100.0}}" for pair in ends]
-    lists = (",\n".join(nodes), ",\n".join(springs))
-    return "dimension = 3\nnodes = [{}]\nsprings = [{}]\n".format(*lists)
+    return scene(nodes, springs)
 
 
-def check_large(place):
-    """A frame is several chunks, which several threads fill; topology is in chunks, too."""
-    place.write("large.toml", large_scene(190))
-    check_scene(place, "large", [], [])
-    with h5py.File(place.path("m_large.vtkhdf")) as file:
-        root = file["VTKHDF"]
-        strain, lines = root["CellData/strain"], root["Lines/Connectivity"]
-        assert strain.chunks[0] < len(file["Frames/000000/strain"])
-        assert len(lines) > 2 * lines.chunks[0]
-        points = root["Points"][...]
-    place.run(run_words("large", "--motion alone.vtkhdf --motion-fields none"))
-    with h5py.File(place.path("alone.vtkhdf")) as file:
-        assert file["VTKHDF/Points"].compression is None
-        assert np.array_equal(file["VTKHDF/Points"][...], points)
+class Vtkhdf(Motions):
+    def check_scene(self, name, faces=(), loose=()):
+        """All of a motion against the table of the same run."""
+        stem = "m_" + name
+        times, positions, velocities = self.table_of(run_words(name, f"--motion {stem}.vtkhdf"))
+        self.done(f"simulate --scene {name}.toml --write-scene written.toml")
+        drawn = tomllib.loads(read("written.toml"))
+        frames, nodes = positions.shape[:2]
+        with h5py.File(stem + ".vtkhdf") as file:
+            root = file["VTKHDF"]
+            springs = [tuple(one["nodes"]) for one in drawn["springs"]]
+            assert cells_of(root, "Lines") == springs
+            assert cells_of(root, "Polygons") == list(faces)
+            assert cells_of(root, "Vertices") == [(number,) for number in loose]
+            assert cells_of(root, "Strips") == []
+            check_layout(root, frames, nodes, len(loose) + len(springs) + len(faces))
+            assert np.array_equal(root["Steps/Values"][...], times)
+            assert_close(root["Points"][...].reshape(positions.shape), positions, FLOAT)
+            assert sorted(root["PointData"]) == FIELDS
+            found = root["PointData/velocity"][...].reshape(velocities.shape)
+            assert_close(found, velocities, SHORT)
+            masses = [0 if one.get("pinned") else one["mass"] for one in drawn["nodes"]]
+            energies = 0.5 * np.array(masses) * (velocities**2).sum(axis=2)
+            found = root["PointData/kinetic_energy"][...].reshape(frames, nodes)
+            # Squares and sums round in doubles, far below SHORT.
+            assert_close(found, energies, SHORT * 1.0001)
+            found = root["CellData/strain"][...].reshape(frames, -1)
+            check_strains(found, drawn, positions, len(loose))
+            check_frames(stem, file, times)
+        self.assertEqual(sidecar(stem + ".vtkhdf.json")["outcome"], "reached_end")
 
+    def test_scenes_of_every_kind(self):
+        self.check_scene("cloth", cloth_faces(5))
+        self.check_scene("plane", loose=[3])
+        self.check_scene("line")
+        self.check_scene("massless")
+        self.check_scene("meshed", [(0, 1, 2), (0, 2, 3)])
+        self.assertEqual(glob.glob("*.part"), [])
 
-def check_failed_run(place):
-    """A run that grows without bound leaves what it reached, and nothing that is no number."""
-    _, positions, velocities = place.table_of(f"{DIVERGING} --motion d.vtkhdf", status=3)
-    with h5py.File(place.path("d.vtkhdf")) as file:
-        root = file["VTKHDF"]
-        frames = int(root["Steps"].attrs["NSteps"])
-        assert 1 < frames <= len(positions)
-        found = root["Points"][...]
-        assert_close(found.reshape(frames, -1, 3), positions[:frames], FLOAT)
-        for data in (found, root["PointData/velocity"][...], root["PointData/kinetic_energy"][...]):
-            assert np.isfinite(data).all()
-        assert len(xdmf_frames(place.path("d.xdmf"))) == frames
-    # The next frame's kinetic energies would be beyond 32-bit floats.
-    if frames < len(positions):
-        assert (velocities[frames] ** 2).sum(axis=1).max() * 0.5 / 25 > np.finfo("f4").max / 2
+    def test_fields_that_are_not_named_are_left_out(self):
+        for fields, kept in ("strain", ["strain"]), ("none", []):
+            words = f"--motion f.vtkhdf --motion-fields {fields}"
+            self.done("simulate " + run_words("cloth", words))
+            with h5py.File("f.vtkhdf") as file:
+                self.assertEqual(list(file["VTKHDF/PointData"]), [])
+                self.assertEqual(list(file["VTKHDF/CellData"]), kept)
+                self.assertEqual(sorted(file["Frames/000000"]), ["Points", *kept])
 
+    def test_frames_fill_several_chunks_the_last_one_in_part(self):
+        words = "--scene pair --method verlet --step-size 1e-3 --until 9 --every 2e-3"
+        _, positions, velocities = self.table_of(words + " --motion many.vtkhdf")
+        with h5py.File("many.vtkhdf") as file:
+            points, velocity = file["VTKHDF/Points"], file["VTKHDF/PointData/velocity"]
+            assert len(points) > 2 * points.chunks[0] and len(points) % points.chunks[0] > 0
+            assert_close(points[...].reshape(positions.shape), positions, FLOAT)
+            assert_close(velocity[...].reshape(velocities.shape), velocities, SHORT)
+            assert_close(file["Frames/004500/Points"][...], positions[-1], FLOAT)
 
-def main():
-    with tried_place(__doc__) as place:
-        check_scene(place, "cloth", cloth_faces(5), [])
-        check_scene(place, "plane", [], [3])
-        check_scene(place, "line", [], [])
-        check_scene(place, "massless", [], [])
-        check_scene(place, "meshed", [(0, 1, 2), (0, 2, 3)], [])
-        check_fields(place)
-        check_many_frames(place)
-        check_large(place)
-        check_failed_run(place)
-        assert not [name for name in os.listdir(place.folder) if name.endswith(".part")]
+    def test_a_frame_of_several_chunks_is_filled_by_several_threads(self):
+        write("large.toml", large_scene(190))
+        self.check_scene("large")
+        with h5py.File("m_large.vtkhdf") as file:
+            root = file["VTKHDF"]
+            strain, lines = root["CellData/strain"], root["Lines/Connectivity"]
+            assert strain.chunks[0] < len(file["Frames/000000/strain"])
+            assert len(lines) > 2 * lines.chunks[0]
+            points = root["Points"][...]
+        words = "--motion alone.vtkhdf --motion-fields none"
+        self.done("simulate " + run_words("large", words))
+        with h5py.File("alone.vtkhdf") as file:
+            assert file["VTKHDF/Points"].compression is None
+            assert np.array_equal(file["VTKHDF/Points"][...], points)
 
-
-if __name__ == "__main__":
-    main()
+    def test_a_run_that_grows_without_bound_leaves_the_frames_that_are_numbers(self):
+        _, positions, velocities = self.table_of(f"{DIVERGING} --motion d.vtkhdf", status=3)
+        with h5py.File("d.vtkhdf") as file:
+            root = file["VTKHDF"]
+            frames = int(root["Steps"].attrs["NSteps"])
+            assert 1 < frames <= len(positions)
+            found = root["Points"][...]
+            assert_close(found.reshape(frames, -1, 3), positions[:frames], FLOAT)
+            for data in (found, *(root["PointData"][name][...] for name in FIELDS)):
+                assert np.isfinite(data).all()
+        self.assertEqual(len(xdmf_frames("d.xdmf")), frames)
+        # The next frame's kinetic energies would be beyond 32-bit floats.
+        if frames < len(positions):
+            assert (velocities[frames] ** 2).sum(axis=1).max() * 0.5 / 25 > np.finfo("f4").max / 2

@@ -1,19 +1,15 @@
-"""Runs simulate on the scenes of the folder beside this, for a motion and its table, and reads both
+"""Runs of simulate on the scenes of the folder beside this, for a motion and its table, both read
 back."""
 
-import argparse
-import contextlib
-import csv
 import os
 import shutil
-import subprocess
-import tempfile
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
 import numpy as np
+
+from programs import Programs, run
 
 # Half the spacing of 32-bit floats, relative: what rounding to them may change.
 FLOAT = 2.0**-24
@@ -25,35 +21,18 @@ SMALLEST = 2.0**-126  # below it 32-bit floats are spaced evenly
 DIVERGING = "--scene cloth.toml --method explicit_euler --step-size 1e-2 --until 50 --every 1e-2"
 
 
-@dataclass(frozen=True)
-class Place:
-    """A folder to work in, with the scenes, and the program."""
+class Motions(Programs):
+    """Each test stands in a fresh folder with the scenes."""
 
-    simulate: str
-    folder: str
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def run(self, words, **options):
-        """Runs simulate with these words in the folder; its exit."""
-        command = [self.simulate, *words.split()]
-        return subprocess.run(
-            command, cwd=self.folder, capture_output=True, text=True, check=False, **options
-        )
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(Path(__file__).with_name("scenes"), ".", dirs_exist_ok=True)
 
     def table_of(self, words, status=0):
         """Runs simulate for a motion and its table, which it reads."""
-        ended = self.run(f"{words} --trajectory t.csv")
-        assert ended.returncode == status, (words, ended.returncode, ended.stderr)
-        return table(self.path("t.csv"))
-
-    def files(self, beginning):
-        return sorted(name for name in os.listdir(self.folder) if name.startswith(beginning))
+        ended = run(f"simulate {words} --trajectory t.csv --force")
+        self.assertEqual(ended.returncode, status, ended.stderr)
+        return table("t.csv")
 
 
 def run_words(scene, more):
@@ -65,12 +44,10 @@ def table(path):
     """Times, positions and velocities (frames x nodes x 3, zero beyond the dimension) of a
     --trajectory.
     """
-    with open(path, encoding="utf-8", newline="") as file:
-        header, *rows = list(csv.reader(file))
-    values = np.array([[float(field or "nan") for field in row] for row in rows])
-    nodes = int(values[:, 1].max()) + 1
-    dimension = (len(header) - 2) // 2
-    frames = values.reshape(-1, nodes, len(header))
+    values = np.genfromtxt(path, delimiter=",", skip_header=1)  # what is empty is nan
+    nodes, columns = int(values[:, 1].max()) + 1, values.shape[1]
+    dimension = (columns - 2) // 2
+    frames = values.reshape(-1, nodes, columns)
     positions, velocities = np.zeros((2, len(frames), nodes, 3))
     positions[:, :, :dimension] = frames[:, :, 2 : 2 + dimension]
     velocities[:, :, :dimension] = frames[:, :, 2 + dimension :]
@@ -119,14 +96,3 @@ def xdmf_frames(path):
             assert int(item.get("Precision")) == found[name].dtype.itemsize
         frames.append((float(grid.find("Time").get("Value")), found))
     return frames
-
-
-@contextlib.contextmanager
-def tried_place(description):
-    """A place with the program of the folder that the command line names, gone at the end."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--bin", required=True, help="the folder of the programs")
-    simulate = os.path.join(os.path.abspath(parser.parse_args().bin), "simulate")
-    with tempfile.TemporaryDirectory(prefix="motion.") as folder:
-        shutil.copytree(Path(__file__).with_name("scenes"), folder, dirs_exist_ok=True)
-        yield Place(simulate, folder)

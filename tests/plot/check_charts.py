@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Checks work-precision charts of hand-made tables, which the study's program in the folder QDDOT_BIN
 judges: the names of methods, the key, the strip of failures, and that --all shows every method."""
 
@@ -153,7 +152,3 @@ class Charts(HandMade):
         said = f"{sidecar} cannot be read: 'scene'.\n"
         self.assertEqual(draw(WHICH, picture, self.folder), (2, said))
         self.assertFalse(picture.exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Whether the parts of the pictures read tables and records, choose what stands out, place labels
 and word numbers as they say."""
 
@@ -301,7 +300,3 @@ class Labels(unittest.TestCase):
         self.assertTrue(labels.cross((0, 0), (2, 2), (0, 2), (2, 0)))
         self.assertFalse(labels.cross((0, 0), (2, 2), (3, 0), (5, 2)))
         self.assertFalse(labels.cross((0, 0), (1, 1), (0, 3), (3, 0)))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,9 +1,7 @@
-#!/usr/bin/python3
 """Checks that each study's script draws the results of a small study: every picture exists, is not
 empty and names the methods. The same numbers must give the same picture. The programs are in the
 folder QDDOT_BIN."""
 
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -11,7 +9,8 @@ from pathlib import Path
 from matplotlib import image
 
 import studies
-from study_tables import PROGRAMS, draw, read_table, texts_of
+from programs import run
+from study_tables import draw, read_table, texts_of
 
 # The pictures of each study, and the table whose column `method` the first of them must name.
 PICTURES = {
@@ -43,8 +42,7 @@ class Pictures(unittest.TestCase):
         folder = self.enterContext(tempfile.TemporaryDirectory())
         studies.write_scenes(folder)
         results = Path(folder) / "results"
-        words = [PROGRAMS / study, *studies.STUDIES[study].split(), "--out", results]
-        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+        done = run(f"{study} {studies.STUDIES[study]} --out results", cwd=folder)
         self.assertIn(done.returncode, (0, 3), done.stderr)
         self.assertEqual(draw(f"{study}/{study}.py", results), (0, ""))
         files = [results / f"{name}.{end}" for name in pictures for end in ("png", "svg")]
@@ -63,6 +61,3 @@ class Pictures(unittest.TestCase):
 
 for name in PICTURES:
     setattr(Pictures, f"test_{name}", lambda self, study=name: self.check(study))
-
-if __name__ == "__main__":
-    unittest.main()

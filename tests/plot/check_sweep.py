@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Checks that the picture of a sweep agrees with its hand-made tables: the fastest methods with
 their times and margins, where they change, and what is left out. Nothing may overlap."""
 
@@ -298,7 +297,3 @@ class Places(Sweep):
         for (first, box), (then, other) in combinations(boxes, 2):
             apart = box.x1 < other.x0 or other.x1 < box.x0 or box.y1 < other.y0 or other.y1 < box.y0
             self.assertTrue(apart, f"{first} is over {then}")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
+from programs import run
+
 EXPERIMENTS = Path(__file__).resolve().parents[2] / "experiments"
-PROGRAMS = Path(os.environ.get("QDDOT_BIN", "build/bin")).resolve()
 
 
 def write_table(path, columns, rows):
@@ -27,8 +28,7 @@ def read_table(path):
 
 def judge(folder):
     """Makes the record of the tables in a folder."""
-    words = [PROGRAMS / "work_precision", "--judge", folder, "--force"]
-    subprocess.run(words, capture_output=True, check=True)
+    run(["work_precision", "--judge", folder, "--force"]).check_returncode()
 
 
 def draw(script, *words):

@@ -4,9 +4,8 @@ import glob
 import os
 import signal
 import time
-import unittest
 
-from programs import Programs, read, sidecar, started, table, write
+from programs import Programs, sidecar, started, table, write
 
 # A run that is long, into long.csv.
 LONG = (
@@ -48,16 +47,6 @@ class Interruption(Programs):
         self.done(SHORT + "a.csv --time-limit 1e9")  # which ends by itself
         self.assertIsNone(sidecar("a.json")["interrupted"])
 
-    def test_a_study_that_is_killed_goes_on_to_the_same_points(self):
-        line = "convergence --scene oscillator --methods verlet,rk4 --until 20 --out "
-        self.done(line + "whole")
-        process = started(line + "half")
-        wait_for("half/convergence.journal")
-        self.assertEqual(self.signalled(process, signal.SIGKILL).returncode, -signal.SIGKILL)
-        self.done(line + "half --resume")
-        self.assertEqual(read("half/order.csv"), read("whole/order.csv"))
-        self.assertEqual(sorted(os.listdir("half")), sorted(os.listdir("whole")))
-
     def test_a_study_that_is_interrupted_has_its_tables_and_goes_on(self):
         process = started(STUDY)
         # A study whose journal has no piece yet has nothing to save.
@@ -84,7 +73,3 @@ class Interruption(Programs):
         self.assertEqual(self.signalled(living, signal.SIGTERM).returncode, 130)
         left = "a.csv.part b.csv b.json long.csv long.json notes.part"
         self.assertEqual(sorted(os.listdir(".")), left.split())
-
-
-if __name__ == "__main__":
-    unittest.main()

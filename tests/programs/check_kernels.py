@@ -5,7 +5,6 @@ and quotients. The lowest level has no fused products and rounds otherwise.
 """
 
 import os
-import unittest
 
 from programs import Programs, read, run
 
@@ -40,7 +39,3 @@ class Kernels(Programs):
                 for roots in ("processor", "estimated_root", "estimated"):
                     with self.subTest(f"{line}, {level}, {roots}"):
                         self.assertIn(self.end_of(level, roots, line), ("", expected))
-
-
-if __name__ == "__main__":
-    unittest.main()

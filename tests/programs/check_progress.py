@@ -7,7 +7,6 @@ import re
 import struct
 import subprocess
 import termios
-import unittest
 
 from programs import Programs, words_of
 from studies import STUDIES, write_scenes
@@ -83,7 +82,3 @@ class Progress(Programs):
         self.assertEqual(in_terminal(line, term="dumb")[0::2], (0, []))
         self.assertEqual(in_terminal(line + " --progress none"), (0, "", []))
         self.assertNotRegex(self.done(line).stderr, "[\r\x1b]")
-
-
-if __name__ == "__main__":
-    unittest.main()

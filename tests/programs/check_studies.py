@@ -2,10 +2,9 @@
 
 import math
 import os
-import unittest
 
 from programs import (
-    CHAOS, Programs, header, node, pin, read, scene, sidecar, spring, study, table, write,
+    CHAOS, Programs, header, node, pin, scene, sidecar, spring, study, table, write,
 )  # fmt: skip
 
 # n masses of 1 kg on springs of 100 N/m between two walls in 1D, at rest:
@@ -116,12 +115,6 @@ class Tables(Programs):
                     for key in ("command_line", "version", "compiler", "cpu", "libraries", "date"):
                         self.assertTrue(origin[key])
 
-    def test_the_same_command_gives_the_same_table(self):
-        line = "symmetric_roots --samples 2 --out "
-        for out in ("one", "other"):
-            self.done(line + out)
-        self.assertEqual(read("one/roots.csv"), read("other/roots.csv"))
-
 
 class Orders(Programs):
     def test_every_order_that_is_told_is_the_methods(self):
@@ -217,17 +210,12 @@ class Rest(Programs):
         # A mass on a spring that its weight compresses: w^2 = -g/l sideways and k/m along.
         nodes, springs = [pin(0, 0), node(0, 0.9, mass=1)], [spring(0, 1, 100, rest_length=1)]
         write("upright.toml", scene(nodes, springs, gravity=[0, -10]))
-        # The same beside a stiff spring: -g/l to the rounding of k, 1e-15 of 1e11 / s^2.
-        nodes = [pin(0, 0), node(0, 1, mass=0.01)]
-        springs = [spring(0, 1, 1e9, rest_length=1.0000000001)]
-        write("stands.toml", scene(nodes, springs, gravity=[0, -10]))
         # The second mass on its spring of 0.001 N/m, whose other end gives way by 1e-12 of it.
         nodes = [pin(0), node(1, mass=1), node(2, mass=1)]
         write("soft.toml", scene(nodes, [spring(0, 1, 1e9), spring(1, 2, 0.001)]))
         for words, said, omegas, tolerance in (
             ("upright.toml", "unstable: 1", [-math.sqrt(10 / 0.9), 10], 1e-12),
             ("upright.toml --at equilibrium", "unstable: 0", [math.sqrt(10 / 1.1)], 1e-12),
-            ("stands.toml", "unstable: 1", [-math.sqrt(10)], 1e-4),
             ("soft.toml", "unstable: 0", [math.sqrt(0.001)], 1e-12),
             ("pair", "unstable: 0", [0, 0, 0], 0),  # translations
         ):
@@ -496,7 +484,3 @@ class Stability(Programs):
         self.assertIn(unstable, range(1, 90))
         origin = made(ROOTS).sidecar("out/roots.json")
         self.assertEqual((origin["at"], origin["samples"]), (0.5, 6))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -500,7 +500,3 @@ class Faults(Sweeps):
         self.assertEqual(subprocess.run(silent, check=False).returncode, 3)
         self.done(POINTS)
         self.check_as_one_process()
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import math
 import os
 import shutil
-import unittest
 
 from programs import (
     CHAOS, Programs, header, node, pin, read, rows_of, run, scene, sidecar, spring, study, table,
@@ -243,44 +242,6 @@ class Charts(Programs):
         self.assertEqual(held, {"arkode_erk4"})
 
 
-class References(Programs):
-    """The reference.json that a run finds: a mark of its time tells whether it was written anew."""
-
-    def setUp(self):
-        super().setUp()
-        self.done(ORBIT)
-        self.mark()
-
-    def mark(self):
-        os.utime("reference.json", (0, 0))
-
-    def is_marked(self):
-        return os.stat("reference.json").st_mtime == 0
-
-    def test_the_same_motion_takes_it_and_another_makes_its_own(self):
-        self.done(ORBIT)
-        self.assertTrue(self.is_marked())
-        for old, new, until in ("0.1", "0.2", 0.2), ("orbit", "pair", 0.1):
-            self.done(ORBIT.replace(old, new))
-            self.assertFalse(self.is_marked())
-            self.assertEqual(sidecar("reference.json")["t"], until)
-            self.mark()
-
-    def test_a_damaged_one_is_made_anew(self):
-        for size in (0, 300):
-            os.truncate("reference.json", size)
-            self.mark()
-            self.done(ORBIT)
-            self.assertFalse(self.is_marked())
-            self.assertEqual(len(sidecar("reference.json")["q"]), 2)
-
-    def test_one_of_another_hand_is_not_replaced(self):
-        for text in ("{", "[]", "my notes"):
-            write("reference.json", text)
-            self.refused(ORBIT, "reference.json", "--force")
-            self.assertEqual(read("reference.json"), text)
-
-
 class Records(Programs):
     """The record of a chart, chart.json, and how it is made anew from tables."""
 
@@ -328,6 +289,12 @@ class Records(Programs):
         chart = self.judge()
         self.near(chart["certified"] / self.measured["certified"], 1, 1e-2)
         self.assertEqual(self.front(chart), self.front(self.measured))
+
+    def test_a_reference_of_another_hand_is_not_replaced(self):
+        for text in ("{", "[]", "my notes"):
+            write("reference.json", text)
+            self.refused(ORBIT, "reference.json", "--force")
+            self.assertEqual(read("reference.json"), text)
 
     def test_folders_that_cannot_be_read_are_refused_in_a_sentence(self):
         line = "work_precision --judge ."
@@ -448,7 +415,3 @@ class Motions(Programs):
         for name, said in ("points.json", "it is missing"), ("points.csv", "it cannot be read"):
             os.remove(name)
             self.refused(line, f"{name}: {said}")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,6 @@
 """Runs of the programs, each in a fresh folder, and the tables that they write.
 
-Every check here is called as check_NAME.py --bin FOLDER [unittest options].
+The programs are in the folder QDDOT_BIN.
 """
 
 import atexit
@@ -12,12 +12,10 @@ import math
 import os
 import shlex
 import subprocess
-import sys
 import tempfile
 import unittest
 
-BIN = os.path.abspath(sys.argv.pop(sys.argv.index("--bin") + 1))
-sys.argv.remove("--bin")
+BIN = os.path.abspath(os.environ.get("QDDOT_BIN", "build/bin"))
 
 # A motion that nobody can follow to its end.
 CHAOS = 'until = 12\n[generator]\nkind = "chain"\nnodes = 4\nstiffness = 1000\n'

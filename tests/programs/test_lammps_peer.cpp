@@ -92,17 +92,6 @@ BOOST_FIXTURE_TEST_CASE(steps_are_verlets_but_for_rounding, Given,
   }
 }
 
-// Half the step leaves a quarter of the error, within a tenth at h w of a tenth and less.
-BOOST_FIXTURE_TEST_CASE(it_converges_with_order_2, Given,
-                        *boost::unit_test::precondition(lammps_is_there)) {
-  const auto peer = lammps();
-  const Problem given = problem(random_scene(3, 1));
-  const auto error = [&](double h) {
-    return given.error(peer->run(given, ForceKind::its_own, h, 60).end);
-  };
-  BOOST_TEST(error(until / 400) / error(until / 800) == 4, boost::test_tools::tolerance(0.1));
-}
-
 BOOST_FIXTURE_TEST_CASE(out_of_time_it_says_so, Given,
                         *boost::unit_test::precondition(lammps_is_there)) {
   const Run run = lammps()->run(problem(random_scene(3, 1)), ForceKind::its_own, 1e-9, 0.5);

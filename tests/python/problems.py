@@ -1,6 +1,5 @@
 """Problems that the tests of the module share."""
 
-import csv
 import os
 import subprocess
 import tempfile
@@ -8,31 +7,14 @@ import tempfile
 import numpy as np
 
 import qddot
-
-BIN = os.environ.get("QDDOT_BIN", "")
-
-
-def run_program(name, *words):
-    """Runs a program; its standard output and error, and its status."""
-    done = subprocess.run(
-        [os.path.join(BIN, name), *map(str, words)], capture_output=True, text=True
-    )
-    return done.stdout, done.stderr, done.returncode
+from programs import table
 
 
 def read_table(path):
-    """The columns of a CSV file, as numbers where they are."""
-    with open(path, newline="", encoding="utf-8") as file:
-        header, *rows = list(csv.reader(file))
-    columns = dict(zip(header, zip(*rows)))
-
-    def numbers(column):
-        try:
-            return np.array([float(x) if x else np.nan for x in column])
-        except ValueError:
-            return np.array(column)
-
-    return {name: numbers(column) for name, column in columns.items()}
+    """The columns of a CSV file; where one is empty it is nan."""
+    rows = table(path)
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    return {n: np.array([np.nan if x is None else x for x in c]) for n, c in columns.items()}
 
 
 def random_scene(seed, dimension=3):

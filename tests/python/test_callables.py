@@ -212,7 +212,3 @@ class Callables(unittest.TestCase):
         others = [np.full(n, 7.0) for _ in range(50)]
         qddot.solve(system, "verlet", step_size=0.01, until=0.1, q0=others[0])
         self.assertTrue(0.4 < q.min() == q.max() < 0.5)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,6 +1,5 @@
 """Ctrl-C, threads and processes."""
 
-import os
 import pickle
 import signal
 import subprocess
@@ -15,6 +14,7 @@ import numpy as np
 
 import problems
 import qddot
+from limited_run import cpu_of
 
 # The work of each script until Ctrl-C comes, by itself for many minutes.
 ENDLESS = {
@@ -55,13 +55,6 @@ def script(endless, before=""):
     )
 
 
-def processor_seconds(process):
-    """The time of the processor that it had so far."""
-    with open(f"/proc/{process.pid}/stat", "rb") as file:
-        fields = file.read().rsplit(b")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def interrupted(text):
     """What the script prints that gets Ctrl-C once it has worked for a while after it was ready, however
     busy the machine is."""
@@ -69,8 +62,8 @@ def interrupted(text):
         [sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as process:
         assert process.stdout.readline() == "ready\n"
-        until = processor_seconds(process) + 0.3
-        while process.poll() is None and processor_seconds(process) < until:
+        until = cpu_of(process.pid) + 0.3
+        while process.poll() is None and cpu_of(process.pid) < until:
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=120)
@@ -257,7 +250,3 @@ print("exits")
                     self.assertTrue(np.array_equal(there.end.q, here.end.q))
                     self.assertEqual(there.counts, here.counts)
                     self.assertEqual(there.diagnosis(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -392,7 +392,3 @@ class Meaning(unittest.TestCase):
             exact.errors(q[:3], v)
         with self.assertRaisesRegex(ValueError, "ends at t = 0.2"):
             exact.errors(qddot.solve(scene, "verlet", step_size=1e-3, until=0.2))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -85,7 +85,3 @@ class BesideSciPy(unittest.TestCase):
             )  # fmt: skip
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertGreater(os.path.getsize(os.path.join(folder, "beside_scipy.png")), 10_000)
-
-
-if __name__ == "__main__":
-    unittest.main()

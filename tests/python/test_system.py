@@ -227,7 +227,3 @@ class OwnForces(unittest.TestCase):
     def test_a_run_that_grows_warns(self):
         with self.assertWarnsRegex(Warning, "energy"):
             qddot.solve(qddot.scenes.oscillator(), "explicit_euler", step_size=0.003, until=9)
-
-
-if __name__ == "__main__":
-    unittest.main()

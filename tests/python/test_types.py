@@ -69,7 +69,3 @@ class Names(unittest.TestCase):
             self.assertTrue(hasattr(qddot, name), name)
             if name != "__version__":
                 self.assertTrue(getattr(qddot, name).__doc__, name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Whether motions are told in few bytes as the page's format says, and which frames and runs are
 kept where room is scarce."""
 
@@ -89,7 +88,3 @@ class Budget(unittest.TestCase):
             size = sum(run.size for run in runs)
             # Choices differ by a fifth, or by one run of at least two.
             self.assertTrue(0.5 * room <= size <= room, f"{size} of {room}")
-
-
-if __name__ == "__main__":
-    unittest.main()

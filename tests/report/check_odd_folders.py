@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Whether the page of a folder with hostile names, missing or broken files is harmless and honest,
 and whether it appears whole or not at all."""
 
@@ -319,7 +318,3 @@ class Motions(Folder):
         data = self.page().data
         self.assertIsNone(data["motion"])
         self.assertRegex(data["notes"][0], ": motions.csv has no column method")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,4 @@
-#!/usr/bin/python3
 """Whether the page of a report does what it should in a real browser: Chromium without a screen."""
-
-import unittest
 
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
@@ -256,7 +253,3 @@ class Odd(Page):
         spoiled.write_text(page.replace("<body>", f"<body>{script}", 1), encoding="utf-8")
         self.load(spoiled)
         self.browser.wait_for_words("#motion", "lacks DecompressionStream")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,13 +1,10 @@
-#!/usr/bin/python3
 """Whether a folder becomes one page that holds what the files say, and nothing else: made folders
 and a real study. The programs are in the folder QDDOT_BIN."""
 
 import math
 import os
 import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -22,7 +19,7 @@ from commands import RunCommands
 from packed_folder import Folder, elements
 from record import read_record
 from study_folder import read_study
-from study_tables import PROGRAMS
+from programs import BIN, Study
 
 SLOW = (
     "symplectic_euler semi_implicit_euler position_verlet blanes_moan4 blanes_moan6 symmetric6"
@@ -316,13 +313,12 @@ class RealStudy(unittest.TestCase):
     """A study with options of its own."""
 
     def test_simulate_takes_the_commands_of_the_runs(self):
-        root = Path(self.enterContext(tempfile.TemporaryDirectory()))
         # Runs that take longer are points without an error; which ones, decides nothing here.
-        words = "--scene orbit --methods verlet,cvode_bdf,implicit_midpoint --until 0.5 --repeats 1"
-        words += " --max-order 3 --solver cholmod --accuracies 0.03 --point-limit 0.02 --out own"
-        program = [PROGRAMS / "work_precision", *words.split()]
-        subprocess.run(program, cwd=root, capture_output=True, check=True)
-        study = read_study(str(root / "own"))
+        words = "work_precision --scene orbit --methods verlet,cvode_bdf,implicit_midpoint"
+        words += " --until 0.5 --repeats 1 --max-order 3 --solver cholmod --accuracies 0.03"
+        words += " --point-limit 0.02 --out own"
+        made = Study(words)
+        study = read_study(made / "own")
         self.assertEqual([row["accuracy"] for row in answers.answers(study)], [0.03])
         failed = {run.outcome for run in study.runs} - {"reached_end"}
         self.assertEqual(failed, set(study.sidecar["outcomes"]))
@@ -336,10 +332,6 @@ class RealStudy(unittest.TestCase):
             line = RunCommands(study).of_run(run.method, run.knob, run.value)
             self.assertIn(option, line)
             self.assertEqual("--solver" in line, method != "verlet")
-            line = line.replace("build/bin", str(PROGRAMS), 1)
-            done = subprocess.run(line, shell=True, cwd=root, capture_output=True, check=False)
+            line = line.replace("build/bin", BIN, 1)
+            done = subprocess.run(line, shell=True, cwd=made.path, capture_output=True, check=False)
             self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
-
-
-if __name__ == "__main__":
-    unittest.main()
