@@ -13,10 +13,6 @@ def outcome_words(outcome):
     return WORDS.get(outcome, outcome)
 
 
-def is_held(run):
-    return run["outcome"] in HELD
-
-
 def has_grown(run):
     return run["outcome"] in GROWN
 
@@ -30,7 +26,7 @@ def limit_of(method):
 
 def first_failure(runs):
     """Of runs, the one of the least h ω that fails, and how."""
-    failed = [run for run in runs if not is_held(run)]
+    failed = [run for run in runs if run["outcome"] not in HELD]
     if not failed:
         return NOTHING
     first = min(failed, key=lambda run: float(run["h_omega"]))

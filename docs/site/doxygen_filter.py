@@ -34,29 +34,21 @@ def description(texts):
 
 def filtered(lines):
     """The lines with their comments turned."""
-    made, i = [], 0
-    while i < len(lines):
-        behind, whole = BEHIND.match(lines[i]), WHOLE.match(lines[i])
-        if whole:
-            texts = []
-            while i < len(lines) and (line := WHOLE.match(lines[i])):
-                texts.append(line[2])
-                i += 1
-            if i < len(lines) and lines[i].strip():
-                made += description(texts)
+    made, block = [], []
+    column = None  # where the comment behind a member begins, whose further lines stand below that
+    for line in lines:
+        behind, whole = BEHIND.match(line), WHOLE.match(line)
+        if whole and len(whole[1]) == column:
+            made.append(f"{whole[1]}///<{escaped(whole[2])}")
             continue
-        if behind:
-            column = len(behind[1])
-            made.append(f"{behind[1]}///<{escaped(behind[2])}")
-            # Its further lines stand below its beginning.
-            while i + 1 < len(lines) and (more := WHOLE.match(lines[i + 1])):
-                if len(more[1]) != column:
-                    break
-                made.append(f"{more[1]}///<{escaped(more[2])}")
-                i += 1
-        else:
-            made.append(lines[i])
-        i += 1
+        column = len(behind[1]) if behind else None
+        if whole:
+            block.append(whole[2])
+            continue
+        if block and line.strip():
+            made += description(block)
+        block = []
+        made.append(f"{behind[1]}///<{escaped(behind[2])}" if behind else line)
     return made
 
 

@@ -29,12 +29,6 @@ def file_of(name):
     return found[0]
 
 
-def first_comment(text):
-    """The lines of the comment that a file begins with, without slashes."""
-    comment = itertools.takewhile(lambda line: line.startswith("//"), text.splitlines())
-    return [line[2:] for line in comment]
-
-
 def escaped(text):
     """A text whose characters mean nothing to Markdown; code between backticks stays as it is."""
     parts = re.split(r"(`[^`]*`)", text)
@@ -62,7 +56,9 @@ def as_markdown(lines):
 def formula_of(name):
     """The formula of a method and what its file says of it, as Markdown."""
     path = file_of(name)
-    markdown = as_markdown(first_comment(sources()[path]))
+    lines = sources()[path].splitlines()
+    comment = itertools.takewhile(lambda line: line.startswith("//"), lines)
+    markdown = as_markdown(line[2:] for line in comment)
     if "```text" not in markdown:
         raise page_data.BadPage(
             f"method {name} has no formula: the first comment of {path} has no indented line"

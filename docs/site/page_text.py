@@ -19,14 +19,8 @@ def prose(text):
     """The paragraphs and items of lists: no headings, tables, pictures or code."""
     kept = []
     for line in without_code(text).splitlines():
-        if re.match(r"\s*(\||#|!\[|\(?\+?```)", line):
-            kept.append("")
-            continue
-        kept.append(
-            re.sub(r"^\s*(?:[-*]|\d+\.)\s+", "\n", line)
-            if re.match(r"\s*(?:[-*]|\d+\.)\s", line)
-            else line
-        )
+        is_other = re.match(r"\s*(\||#|!\[|\(?\+?```)", line)
+        kept.append("" if is_other else re.sub(r"^\s*(?:[-*]|\d+\.)\s+", "\n", line))
     return "\n".join(kept)
 
 

@@ -32,7 +32,7 @@ CALLS = {
 NOTICE = "<!-- Made by ./run docs from {source}. Change that file, not this one. -->\n\n"
 
 
-def environment():
+def environment(calls=CALLS):
     """Jinja with what pages may call, also as filters; an unknown name is an error."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(PAGES),
@@ -41,8 +41,8 @@ def environment():
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.globals.update(CALLS, methods=method_pages.all_methods)
-    made.filters.update(CALLS)
+    made.globals.update(calls, methods=method_pages.all_methods)
+    made.filters.update(calls)
     return made
 
 
@@ -53,32 +53,19 @@ def own_calls(template):
     return {name: value for name, value in defined.items() if not name.startswith("_")}
 
 
-def render_page(template, **values):
-    """The text of one page."""
-    page_data.said_on_page.clear()
-    return template.render(**values)
-
-
-def target_of(template):
-    """Where the page of a template goes: README.md to the root, all else to docs/."""
-    return ROOT / template if template == "README.md" else ROOT / "docs" / template
-
-
 def rendered():
-    """All pages by their files: those of the templates, and one a method."""
+    """All pages by their files: those of the templates, README.md in the root, and one a method."""
     jinja = environment()
-    pages = {}
-    for name in sorted(file.name for file in PAGES.glob("*.md")):
-        if name == "method.md":
-            continue
-        notice = NOTICE.format(source=f"docs/pages/{name}")
-        pages[target_of(name)] = notice + render_page(jinja.get_template(name), **own_calls(name))
-    template = jinja.get_template("method.md")
+    wanted = [(file.name, file.name, own_calls(file.name)) for file in sorted(PAGES.glob("*.md"))]
+    wanted = [page for page in wanted if page[0] != "method.md"]
     for method in method_pages.all_methods():
-        page = render_page(template, method=method)
-        pages[ROOT / f"docs/methods/{method.name}.md"] = (
-            NOTICE.format(source="docs/pages/method.md") + page
-        )
+        wanted.append((f"methods/{method.name}.md", "method.md", {"method": method}))
+    pages = {}
+    for page, template, values in wanted:
+        page_data.said_on_page.clear()
+        notice = NOTICE.format(source=f"docs/pages/{template}")
+        file = ROOT / ("" if page == "README.md" else "docs") / page
+        pages[file] = notice + jinja.get_template(template).render(**values)
     return pages
 
 
@@ -112,10 +99,7 @@ def drafted(call):
 
 def draft(name):
     """One page of a template; of method.md that of the method NAME."""
-    calls = {name: drafted(call) for name, call in CALLS.items()}
-    jinja = environment()
-    jinja.globals.update(calls)
-    jinja.filters.update(calls)
+    jinja = environment({name: drafted(call) for name, call in CALLS.items()})
     for method in method_pages.all_methods():
         if method.name == name:
             return jinja.get_template("method.md").render(method=method)

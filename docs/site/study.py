@@ -14,7 +14,6 @@ import json
 import os
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -163,11 +162,11 @@ def run(study, command):
     return done.stdout
 
 
-def write_whole(file, text):
-    """Writes a file whole or not at all."""
+def write_whole(file, content):
+    """Writes a file of text or bytes whole or not at all."""
     file.parent.mkdir(parents=True, exist_ok=True)
     part = file.with_name(file.name + ".part")
-    part.write_text(text, encoding="utf-8")
+    part.write_bytes(content.encode() if isinstance(content, str) else content)
     os.replace(part, file)
 
 
@@ -179,23 +178,9 @@ def rounded(cell):
         return cell
 
 
-def shortened(chart):
-    """The record of a chart with the errors that judge it alone, and its numbers in six digits."""
-
-    def six(value):
-        if isinstance(value, dict):
-            return {key: six(part) for key, part in value.items()}
-        if isinstance(value, list):
-            return [six(part) for part in value]
-        return float(f"{value:.6g}") if isinstance(value, float) else value
-
-    judges = [one for one in chart["quantities"] if one["name"] == chart["judged_by"]]
-    return six(chart | {"quantities": judges})
-
-
 def keep(file, target, columns=None):
-    """Copies a result, whole or not at all; a table with these columns, or all, in six digits."""
-    target.parent.mkdir(parents=True, exist_ok=True)
+    """Copies a result, whole or not at all: a table with these columns, or all, in six digits, and
+    so the record of a chart, with the errors that judge it alone."""
     if file.suffix == ".csv":
         with open(file, newline="", encoding="utf-8") as source:
             rows = list(csv.DictReader(source))
@@ -205,14 +190,14 @@ def keep(file, target, columns=None):
         csv.writer(text, lineterminator="\n").writerows(lines)
         write_whole(target, text.getvalue())
     elif file.suffix == ".json":
-        facts = json.loads(file.read_text(encoding="utf-8"))
+        is_chart = file.name == "chart.json"
+        style = {"separators": (",", ":")} if is_chart else {"indent": 1}
+        number = (lambda digits: float(rounded(digits))) if is_chart else float
+        facts = json.loads(file.read_text(encoding="utf-8"), parse_float=number)
         kept = {key: value for key, value in facts.items() if key not in UNKEPT}
-        if file.name == "chart.json":
-            text = json.dumps(shortened(kept), separators=(",", ":"))
-        else:
-            text = json.dumps(kept, indent=1)
-        write_whole(target, text + "\n")
+        if is_chart:
+            judge = kept["judged_by"]
+            kept["quantities"] = [one for one in kept["quantities"] if one["name"] == judge]
+        write_whole(target, json.dumps(kept, **style) + "\n")
     else:
-        part = target.with_name(target.name + ".part")
-        shutil.copyfile(file, part)
-        os.replace(part, target)
+        write_whole(target, file.read_bytes())

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 
 from drift_table import FATES, draw_table, label, table_height
 from labels import Ink, label_lines
-from measurements import optional, read_facts, read_table
+from measurements import grouped, optional, read_facts, read_table
 from names import shown
 from sheet import Sheet, main
 from style import FAINT, GRID, log_ticks, number
@@ -55,14 +55,8 @@ def key(row):
 
 def one_a_method(summary):
     """A row a method: of adaptive ones, that of the middle one of the tolerances."""
-    runs = {}
-    for row in summary:
-        runs.setdefault(row["method"], []).append(row)
-    chosen = []
-    for rows in runs.values():
-        rows.sort(key=lambda row: -float(row["value"]))
-        chosen.append(rows[len(rows) // 2])
-    return chosen
+    runs = grouped(summary, lambda row: row["method"]).values()
+    return [sorted(rows, key=lambda row: -float(row["value"]))[len(rows) // 2] for rows in runs]
 
 
 def envelope(times, errors):
@@ -139,12 +133,8 @@ def label_paths(sheet, axes, lines, others):
 def telling(rows):
     """The runs that are drawn over time: the telling methods first, then others of rare fates."""
     chosen = [row for name in TELLING for row in rows if row["method"] == name]
-    counts = {}
-    for row in chosen:
-        counts[row["fate"]] = counts.get(row["fate"], 0) + 1
     for row in rows:
-        if row not in chosen and counts.get(row["fate"], 0) == 0:
-            counts[row["fate"]] = 1
+        if all(row["fate"] != other["fate"] for other in chosen):
             chosen.insert(0, row)
     others = [row for row in rows if row not in chosen]
     return (chosen + others)[:MOST_LINES]
@@ -209,10 +199,8 @@ def draw_paths(sheet, rows, drift):
 
 def draw_tolerances(sheet, top, summary):
     """The errors at the end over the tolerance."""
-    runs = {}
-    for row in summary:
-        if row["knob"] == "rtol":
-            runs.setdefault(row["method"], []).append(row)
+    adaptive = [row for row in summary if row["knob"] == "rtol"]
+    runs = grouped(adaptive, lambda row: row["method"])
     runs = {name: rows for name, rows in runs.items() if len(rows) > 1}
     if not runs:
         return

@@ -2,6 +2,7 @@
 failed runs, and at which values of their knobs."""
 
 from failures import FONT_SIZE, KNOBS, TITLE
+from scene_row import counted
 from style import FAINT, number
 
 LINE = 0.2
@@ -11,11 +12,6 @@ MOST_CAUSES = 4
 MARGIN = 0.15
 COUNT_AT = 1.75
 WHERE_AT = 2.75
-
-
-def is_point(sweep):
-    """Whether a sweep has a run that is a point of the chart."""
-    return any(not run.failure for run in sweep)
 
 
 def threshold(sweep, cause):
@@ -37,7 +33,8 @@ def where(groups, cause, named):
     for knob, group in groups.items():
         symbol = KNOBS.get(knob, ("", knob))[1]
         for sweep in group:
-            if is_point(sweep) and any(run.failure == cause for run in sweep):
+            failures = {run.failure for run in sweep}
+            if failures.issuperset(("", cause)):
                 sign, value = threshold(sweep, cause)
                 ends.setdefault((symbol, sign), []).append((value, sweep[0].method))
 
@@ -55,20 +52,13 @@ def where(groups, cause, named):
     return "; ".join(parts)
 
 
-def listed(names, count):
-    """The first names of a list, and how many more there are."""
-    more = len(names) - count
-    return ", ".join(names[:count]) + (f" and {more} more" if more else "")
-
-
 def shortening(names):
-    """Lists of fewer and fewer of the names, from all to the first."""
-    return [listed(names, count) for count in range(len(names), 0, -1)]
-
-
-def counted(methods):
-    """How many methods these are, in words."""
-    return f"{len(methods)} method" + ("s" if len(methods) > 1 else "")
+    """Lists of fewer and fewer of the names, from all to the first, and how many more there are."""
+    shorter = [
+        f"{', '.join(names[:count])} and {len(names) - count} more"
+        for count in range(len(names) - 1, 0, -1)
+    ]
+    return [", ".join(names), *shorter]
 
 
 def lines(groups):
@@ -107,16 +97,12 @@ def draw_strip(sheet, top, groups, looks):
     sheet.rule(top)
     sheet.text(MARGIN, top + 0.2, "Runs without a point above", size=10, weight="bold", va="center")
     failing = len({sweep[0].method for group in groups.values() for sweep in group})
-    note = f"{failing} of {counted(looks)}; --all shows each"
+    note = f"{failing} of {counted(len(looks), 'method')}; --all shows each"
     edge = {"size": FONT_SIZE, "color": FAINT, "ha": "right", "va": "center"}
     sheet.text(sheet.width - MARGIN, top + 0.2, note, **edge)
     for line, (cause, names, words) in enumerate(lines(groups)):
         middle = top + TITLE + LINE * (line + 0.5)
         style = {"size": FONT_SIZE, "va": "center"}
         sheet.text(MARGIN, middle, cause, **style)
-        sheet.text(COUNT_AT, middle, counted(names), **style)
-        text = sheet.text(WHERE_AT, middle, "", **style, color=FAINT)
-        for choice in words:
-            text.set_text(choice)
-            if WHERE_AT + sheet.text_width(text) < sheet.width - MARGIN:
-                break
+        sheet.text(COUNT_AT, middle, counted(len(names), "method"), **style)
+        sheet.fitting(WHERE_AT, middle, words, sheet.width - MARGIN, **style, color=FAINT)

@@ -3,9 +3,8 @@
 from itertools import groupby
 
 from matplotlib import ticker
-from matplotlib.text import Text
 
-from labels import Ink, line_label, move_label, place_labels
+from labels import Ink, line_label, move_labels
 from record import sweeps
 from style import FAINT, FRONT, power_of_ten, seconds, widened
 
@@ -224,18 +223,14 @@ class Chart:
         """Names the lines that have a label at one of their ends."""
         named = [sweep for sweep in self.sweeps if self.stroke(sweep).label_size]
         lines = [sweep for sweep in named if any(not run.failure for run in sweep)]
-        ends, texts = [], []
+        ends, texts, positions = [], [], {}
         for sweep in lines:
             good = [self.position(run) for run in sweep if not run.failure]
             ends.append({self.pixels(end): end for end in (good[0], good[-1])})
+            positions |= ends[-1]
             look, stroke = self.looks[sweep[0].method], self.stroke(sweep)
             style = {"white": 0.8, "alpha": stroke.label_alpha}
             style["leader"] = {"alpha": stroke.alpha, "shrinkB": 4}
             size, colors = stroke.label_size, (look.color, look.text_color)
             texts.append(line_label(self.axes, self.label_of(sweep), *colors, size, **style))
-        # The extent of an annotation counts its leader in; that of its text is wanted here.
-        sizes = [Text.get_window_extent(text).size for text in texts]
-        bounds = self.label_bounds()
-        places = place_labels([list(end) for end in ends], sizes, bounds, self.ink(bounds))
-        for text, end, place in zip(texts, ends, places):
-            move_label(text, end[place.anchor], place)
+        move_labels(texts, ends, self.ink(self.label_bounds()), positions.get)

@@ -1,5 +1,6 @@
 """The strip under a work-precision chart that shows the runs which are no points of it."""
 
+from measurements import grouped
 from style import FAINT, GRID, log_ticks, number, widened
 
 KNOBS = {"step_size": ("step size h", "h"), "rtol": ("tolerance rtol", "rtol")}
@@ -15,11 +16,8 @@ FONT_SIZE = 9
 
 def failing(sweeps):
     """The sweeps with at least one failed run, grouped by knob."""
-    groups = {}
-    for sweep in sweeps:
-        if any(run.failure for run in sweep):
-            groups.setdefault(sweep[0].knob, []).append(sweep)
-    return groups
+    failed = (sweep for sweep in sweeps if any(run.failure for run in sweep))
+    return grouped(failed, lambda sweep: sweep[0].knob)
 
 
 def group_height(group):
@@ -29,9 +27,7 @@ def group_height(group):
 
 def strip_height(groups):
     """The height of the strip in inches."""
-    if not groups:
-        return 0.0
-    return TITLE + sum(map(group_height, groups.values()))
+    return TITLE + sum(map(group_height, groups.values())) if groups else 0.0
 
 
 def span_in_words(values, all_values, symbol):
@@ -64,15 +60,6 @@ def reasons(sweep, symbol):
     yield f"{sum(map(len, where.values()))} runs failed in {len(where)} different ways"
 
 
-def write_reasons(sheet, middle, sweep, symbol):
-    """Writes why runs of a sweep failed, in the fullest words that fit."""
-    text = sheet.text(REASON_START, middle, "", size=FONT_SIZE, va="center")
-    for words in reasons(sweep, symbol):
-        text.set_text(words)
-        if REASON_START + sheet.text_width(text) < sheet.width - 0.1:
-            break
-
-
 def write_name(sheet, middle, words, color):
     """Writes what stands before a row."""
     left = NAMES_END - 0.12
@@ -102,7 +89,8 @@ def draw_group(sheet, top, knob, group, looks):
         middle = rows_top + ROW * (row + 0.5)
         draw_sweep(axes, row, sweep, look)
         write_name(sheet, middle, sweep[0].method, look.text_color)
-        write_reasons(sheet, middle, sweep, symbol)
+        words, style = reasons(sweep, symbol), {"size": FONT_SIZE, "va": "center"}
+        sheet.fitting(REASON_START, middle, words, sheet.width - 0.1, **style)
     values = [run.value for sweep in group for run in sweep]
     axes.set_xlim(*widened(min(values) / 1.6, max(values) * 1.6, 1))
     axes.set_ylim(len(group) - 0.5, -0.5)

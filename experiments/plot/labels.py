@@ -189,12 +189,16 @@ def line_label(axes, words, color, text_color, size=9, white=0, alpha=None, lead
     )
 
 
-def move_label(text, position, place):
-    """Puts a label into its place, with a leader where it stands apart from its line."""
-    text.xy = position
-    offset = [(c - a) * 72 / DPI for c, a in zip(place.center, place.anchor)]
-    text.set_position(offset)
-    text.arrow_patch.set_visible(place.length > LEADER_FROM)
+def move_labels(texts, anchors, ink, position_of):
+    """Puts each label near one of its anchors in pixels, of which position_of makes a position in
+    its axes, off the others and off the ink; with a leader where it stands apart from its line."""
+    # The extent of an annotation counts its leader in; that of its text is wanted here.
+    sizes = [Text.get_window_extent(text).size for text in texts]
+    for text, place in zip(texts, place_labels(anchors, sizes, ink.bounds, ink)):
+        text.xy = position_of(place.anchor)
+        offset = [(c - a) * 72 / DPI for c, a in zip(place.center, place.anchor)]
+        text.set_position(offset)
+        text.arrow_patch.set_visible(place.length > LEADER_FROM)
 
 
 def ink_within(axes):
@@ -213,7 +217,4 @@ def label_lines(axes, lines, anchors_of, ink, **style):
             ink.add_line(start, end, 2.0)
         anchors.append(anchors_of(pixels))
         texts.append(line_label(axes, words, color, text_color, **style))
-    # The extent of an annotation counts its leader in; that of its text is wanted here.
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    for text, place in zip(texts, place_labels(anchors, sizes, ink.bounds, ink)):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+    move_labels(texts, anchors, ink, axes.transData.inverted().transform)

@@ -48,6 +48,14 @@ def read_facts(path):
         return json.load(file)
 
 
+def grouped(items, key):
+    """The items in lists by their keys, all in the order in which they come."""
+    groups = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups
+
+
 def optional(text):
     """The number in a cell; NaN where it is empty."""
     return float(text) if text else math.nan
@@ -69,7 +77,6 @@ def interrupted_by(path):
     """What ended the study of the table before it was complete, by the table's sidecar; None where
     that says nothing."""
     try:
-        with open(f"{path.removesuffix('.csv')}.json", encoding="utf-8") as file:
-            return json.load(file).get("interrupted")
-    except (OSError, ValueError, AttributeError):
+        return read_facts(f"{path.removesuffix('.csv')}.json").get("interrupted")
+    except (BadInput, AttributeError):
         return None

@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass
 from functools import cached_property
 
-from measurements import BadInput, parse, read_header, read_rows
+from measurements import BadInput, grouped, parse, read_header, read_rows
 from style import number
 
 
@@ -237,7 +237,5 @@ def read_record(directory):
 
 def sweeps(runs):
     """The runs of each method over each of its knobs, sorted by the value of the knob."""
-    groups = {}
-    for run in runs:
-        groups.setdefault((run.method, run.knob), []).append(run)
-    return [sorted(group, key=lambda run: run.value) for group in groups.values()]
+    groups = grouped(runs, lambda run: (run.method, run.knob)).values()
+    return [sorted(group, key=lambda run: run.value) for group in groups]

@@ -40,6 +40,14 @@ class Sheet:
         """The width of a drawn text in inches."""
         return text.get_window_extent(self.figure.canvas.get_renderer()).width / DPI
 
+    def fitting(self, left, top, choices, right, **style):
+        """Writes at a point the first of the texts that ends left of `right`, else the last."""
+        text = self.text(left, top, "", **style)
+        for choice in choices:
+            text.set_text(choice)
+            if left + self.text_width(text) < right:
+                break
+
     def wrapped(self, words, room, **style):
         """The words with commas between them, in as many lines of that width as they need."""
         return self.filled([*(f"{word}," for word in words[:-1]), *words[-1:]], room, **style)

@@ -18,10 +18,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib import ticker
 from matplotlib.collections import LineCollection
-from matplotlib.text import Text
 
-from chart import move_label
-from labels import Ink, place_labels
+from labels import Ink, move_labels
 from names import shown
 from sheet import Sheet
 from style import FAINT, Look, assign_looks, family_look, use_style
@@ -113,10 +111,8 @@ def label_curves(axes, runs, curves):
         for start, end in zip(piece, piece[1:]):
             ink.add_line(start, end, LINE_INK)
     texts = [draw_label(axes, run) for run in runs]
-    sizes = [Text.get_window_extent(text).size for text in texts]
-    places = place_labels([anchors(piece) for piece in pieces], sizes, bounds, ink)
-    for text, place in zip(texts, places):
-        move_label(text, axes.transData.inverted().transform(place.anchor), place)
+    to_data = axes.transData.inverted().transform
+    move_labels(texts, [anchors(piece) for piece in pieces], ink, to_data)
 
 
 def in_view(pixels, bounds):

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from measurements import grouped
 from style import COOL, number
 
 # The words and colour of an outcome; others are drawn by their own name.
@@ -96,11 +97,8 @@ class Panel:
 
 def panels_of(runs, limits):
     """The panels in the order of the methods."""
-    by_method = {}
-    for run in runs:
-        by_method.setdefault(run.method, []).append(run)
     groups = {}
-    for method, own in by_method.items():
+    for method, own in grouped(runs, lambda run: run.method).items():
         ends = frozenset((run.column, run.amplitude, run.outcome) for run in own)
         key = (own[0].knob, str(limits.get(method)), ends)
         groups.setdefault(key, Panel([], limits.get(method, math.nan), own)).methods.append(method)
