@@ -44,13 +44,15 @@ SCENES = {
     "cloth": Look("#D55E00", "s", IMPLICIT),
     "lattice": Look("#0072B2", "o", IMPLICIT),
 }
-# The growth of factorisations and of the fill of the factors by theory, by scene; all else, and all
-# of chains, grows as n.
+# The growth of factorisations and of the fill of the factors by theory, by scene; all else grows as
+# n.
 FACTORIZATION = {
+    "chain": (lambda n: n, "n"),
     "cloth": (lambda n: n**1.5, "n^{3/2}"),
     "lattice": (lambda n: n**2, "n^2"),
 }
 FILL = {
+    "chain": (lambda n: n, "n"),
     "cloth": (lambda n: n * np.log(n), r"n\,\log\,n"),
     "lattice": (lambda n: n ** (4 / 3), "n^{4/3}"),
 }
@@ -107,8 +109,8 @@ def label_series(axes, drawn):
 def law_of(scene, phase):
     """How a phase grows by theory, and that in letters."""
     if phase == "factorization":
-        return FACTORIZATION.get(scene, LINEAR)
-    return FILL.get(scene, LINEAR) if phase in ("solve", "fill") else LINEAR
+        return FACTORIZATION[scene]
+    return FILL[scene] if phase in ("solve", "fill") else LINEAR
 
 
 def draw_law(axes, points, law, color):
@@ -121,19 +123,25 @@ def draw_law(axes, points, law, color):
 
 def draw_scene(axes, scene, lines, implicit, explicit):
     """The phases of the implicit method on a scene, and the explicit method's whole step."""
-    shown = [((scene, implicit, phase), *words_and_look) for phase, words_and_look in PHASES.items()]
-    shown.append(((scene, f"{implicit}:conjugate_gradients", "step"), *ITERATED_STEP))
-    words, look = EXPLICIT_STEP
-    shown.append(((scene, explicit, "step"), words.format(explicit), look))
     drawn = []
-    for key, words, look in shown:
-        points = lines.get(key)
+    for phase, (words, look) in PHASES.items():
+        points = lines.get((scene, implicit, phase))
         if points is None:
             continue
         draw_series(axes, points, look)
-        if key[2] in ("factorization", "solve", "force"):
-            words = f"{words} {draw_law(axes, points, law_of(scene, key[2]), look.color)}"
+        if phase in ("factorization", "solve", "force"):
+            words = f"{words} {draw_law(axes, points, law_of(scene, phase), look.color)}"
         drawn.append((points, words, look))
+    points = lines.get((scene, f"{implicit}:conjugate_gradients", "step"))
+    if points is not None:
+        words, look = ITERATED_STEP
+        draw_series(axes, points, look)
+        drawn.append((points, words, look))
+    points = lines.get((scene, explicit, "step"))
+    if points is not None:
+        words, look = EXPLICIT_STEP
+        draw_series(axes, points, look)
+        drawn.append((points, words.format(explicit), look))
     return drawn
 
 
@@ -234,7 +242,7 @@ def draw_memory(sheet, rows):
         if phase != "factorization":
             continue
         draw_series(axes, points, SCENES[scene])
-        law = draw_law(axes, points, law_of(scene, "fill"), SCENES[scene].color)
+        law = draw_law(axes, points, FILL[scene], SCENES[scene].color)
         drawn.append((points, f"{scene} {law}", SCENES[scene]))
     axes.set_xlabel("nodes", fontsize=10)
     label_series(axes, drawn)
