@@ -15,82 +15,21 @@
 //     with its 95 % interval and a verdict in words, or that the run is too short for one and which
 //     length would do. The program `verdicts` finds out how often that is right.
 //  4. tolerance.csv says how the error of adaptive methods follows rtol.
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "experiments/energy_drift/drift_jobs.hpp"
 #include "experiments/energy_drift/drift_record.hpp"
 #include "experiments/energy_drift/drift_tables.hpp"
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/scene/invalid_input.hpp"
 
-namespace qddot::energy_drift {
-namespace {
-
-constexpr double standard_resolution = 0.5;  // h w_max
-constexpr double standard_steps = 1e6, most_steps = 1e12;
 // The methods' own tolerances are made for positions in shorter runs. The errors of their solves
 // add up over a million steps. Generalised-alpha then loses only half the energy that it should on
 // the scene orbit, and the trapezoidal rule, which should keep it, gains energy.
 constexpr double standard_solve_tolerance = 1e-9;
-
-// The steps of methods of fixed steps, and the length of all runs.
-struct Course {
-  double step_size, until;  // [s]
-};
-
-// The course that was asked for, else half over the largest frequency and a million steps. Throws
-// InvalidInput if nothing vibrates or there are more than 1e12 steps.
-Course course_of(const Argument<double>& step_size, const Argument<double>& until,
-                 const Subject& subject) {
-  Course course{step_size, until};
-  if (!step_size.is_given()) {
-    course.step_size = standard_resolution / fastest_frequency(subject.reduced);
-    if (!std::isfinite(course.step_size)) {
-      throw InvalidInput(
-          fmt::format("--step-size is missing, and nothing in {} vibrates that could give a "
-                      "default; it is h in s, greater than 0",
-                      subject.source));
-    }
-  }
-  if (!until.is_given()) course.until = standard_steps * course.step_size;
-  const double steps = course.until / course.step_size;
-  if (!(steps >= 1 && steps <= most_steps)) {
-    throw InvalidInput(
-        fmt::format("--until {}: that is {:.3g} steps of {} s; allowed are 1 to {:.0e}",
-                    course.until, steps, course.step_size, most_steps));
-  }
-  return course;
-}
-
-// One run to be made.
-struct Job {
-  const Method* method;
-  double value;
-  double seconds;  // that it may take
-};
-
-// A run of each method of fixed steps, and of each adaptive one at each tolerance. The tolerances
-// share the `seconds` of a method.
-std::vector<Job> jobs_of(const std::vector<const Method*>& methods, double step_size,
-                         const std::vector<double>& rtols, double seconds) {
-  std::vector<Job> jobs;
-  for (const Method* method : methods) {
-    if (method->knob == Knob::step_size) {
-      jobs.push_back({method, step_size, seconds});
-    } else {
-      const double share = seconds / static_cast<double>(rtols.size());
-      for (const double rtol : rtols) jobs.push_back({method, rtol, share});
-    }
-  }
-  return jobs;
-}
-
-}  // namespace
-}  // namespace qddot::energy_drift
 
 int main(int argc, char** argv) {
   using namespace qddot;

@@ -157,6 +157,19 @@ double objective(const SwingingCloth& cloth, const State& end) {
   return cloth.system().kinetic(end.v - cloth.start.v) + cloth.system().potential(end.q);
 }
 
+const Columns<StepRow> error = {{"relative_error", &StepRow::relative_error}};
+
+RowTable<StepRow>& step_table(Program& p, const std::string& file, const std::string& varied,
+                              const Columns<StepRow>& last) {
+  Columns<StepRow> columns = {};
+  if (!varied.empty()) columns += {{varied, &StepRow::varied}};
+  columns += {{"solver", &StepRow::solver},
+              {"iteration", &StepRow::iteration},
+              {"seconds", &StepRow::seconds}};
+  columns += last;
+  return p.table(file, columns);
+}
+
 }  // namespace
 
 const Method& newton_exact() {
@@ -200,6 +213,20 @@ Comparison compare(const SwingingCloth& cloth, double h, int most, int repeats, 
     if (!solved.failure.empty()) result.failures.push_back(solved.failure);
   }
   return result;
+}
+
+StepTables::StepTables(Program& p)
+    : convergence(step_table(p, "convergence.csv", "", error)),
+      positions(step_table(
+          p, "positions.csv", "",
+          {{"distance_to_converged", &StepRow::distance}, {"step_error", &StepRow::own}})),
+      stiffness(step_table(p, "stiffness.csv", "stiffness", error)),
+      resolution(step_table(p, "resolution.csv", "nodes", error)) {}
+
+void StepTables::add(RowTable<StepRow>& table, const Comparison& step,
+                     const nlohmann::json& setup) {
+  for (const StepRow& row : step.rows) table.add(row);
+  table.note({{"setup", setup}});
 }
 
 void print(const Comparison& step, double h) {

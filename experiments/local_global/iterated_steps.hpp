@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/kit/program.hpp"
 #include "experiments/local_global/swinging_cloth.hpp"
 #include "qddot/integrators/method.hpp"
 
@@ -49,6 +50,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, rows, setup, failures, step_error
 // `step_error` is found if `with_truth`.
 Comparison compare(const SwingingCloth& cloth, double h, int most, int repeats, double varied,
                    bool with_truth);
+
+// The tables of these rows.
+struct StepTables {
+  explicit StepTables(Program& p);
+  // Adds one step of one cloth to a table, and its setup to the table's sidecar.
+  static void add(RowTable<StepRow>& table, const Comparison& step, const nlohmann::json& setup);
+
+  RowTable<StepRow>&convergence, &positions, &stiffness, &resolution;
+};
 
 // Prints for people with how many iterations each solver's error is below a tenth of the step's
 // own.

@@ -29,136 +29,8 @@
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
+#include "experiments/local_global/cloth_runs.hpp"
 #include "experiments/local_global/iterated_steps.hpp"
-#include "qddot/algebra/effective_mass.hpp"
-#include "qddot/algebra/laplacian_mass.hpp"
-#include "qddot/integrators/registry.hpp"
-#include "qddot/measure/motion/interruption.hpp"
-#include "qddot/measure/motion/timing.hpp"
-
-namespace qddot::local_global {
-namespace {
-
-constexpr int standard_nodes = 33;  // along a side
-
-// A whole run of the cloth by steps of so many iterations.
-struct RunRow {
-  std::string solver;
-  int iterations = 0;
-  Outcome outcome{};
-  double seconds = 0, position_error = 0, energy_change = 0;  // [s], [m], [J]
-};
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunRow, solver, iterations, outcome, seconds, position_error,
-                                   energy_change)
-
-// Steps of h [s] over `until` [s]; `exact` is where the true motion then is.
-RunRow measured_run(const SwingingCloth& cloth, const State& exact, const Method& method,
-                    int iterations, double h, double until) {
-  State end = cloth.start;
-  Summary summary;
-  const auto integrator =
-      make_integrator(method, cloth.system(), {.step_size = h, .iterations = iterations});
-  const double seconds = seconds_of(
-      [&] { summary = integrator->advance(end, cloth.start.t + until, {}, interruption()); });
-  return {method.name,
-          iterations,
-          summary.outcome,
-          seconds,
-          cloth.distance(end, exact),
-          total_energy(cloth.system(), end) - total_energy(cloth.system(), cloth.start)};
-}
-
-// The methods of these runs, with the numbers of their iterations.
-std::vector<std::pair<const Method*, int>> iterated_runs() {
-  std::vector<std::pair<const Method*, int>> runs;
-  for (const Method& method : methods()) {
-    if (!method.listens_to(Option::iterations)) continue;
-    for (const int n : {1, 2, 3, 5, 10, 20, 50, 100, 200}) runs.emplace_back(&method, n);
-  }
-  for (const int n : {1, 2, 3, 5, 10, 20}) runs.emplace_back(&newton_clamped(), n);
-  runs.emplace_back(&newton_exact(), most_newton_iterations);
-  return runs;
-}
-
-void print(const RunRow& run) {
-  fmt::print("{:<24} {:>10} ", run.solver, run.iterations);
-  if (run.outcome != Outcome::reached_end) {
-    fmt::print("{}\n", name(run.outcome));
-  } else {
-    fmt::print("{:>9.4f} {:>9.4f} {:>9.4f}\n", run.seconds, run.position_error, -run.energy_change);
-  }
-}
-
-// A row of speed.csv.
-struct SpeedRow {
-  int nodes = 0;
-  std::size_t springs = 0;
-  double iteration = 0, setup = 0, factorization = 0;  // [s]
-};
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SpeedRow, nodes, springs, iteration, setup, factorization)
-
-SpeedRow measured_speed(int nodes, double stiffness, double h, int repeats) {
-  const SwingingCloth cloth(nodes, stiffness, 0);
-  constexpr int iterations = 10;
-  const System& system = cloth.system();
-  const auto median_of = [&](const auto& seconds) {
-    std::vector<double> times;
-    for (int i = 0; i < repeats; ++i) times.push_back(seconds());
-    return median(std::move(times));
-  };
-  const auto integrator =
-      make_integrator(*find_method("local_global"), system,
-                      {.step_size = h, .iterations = iterations, .timed = true});
-  const double iteration = median_of([&] {
-    State state = cloth.start;
-    Summary summary;
-    const double all = seconds_of([&] { summary = integrator->advance(state, h); });
-    return (all - summary.seconds.factorization) / iterations;
-  });
-  const double setup =
-      median_of([&] { return seconds_of([&] { LaplacianMass(system).factorize(h * h); }); });
-  EffectiveMass newton(system);
-  SymmetricMatrix k = system.stiffness_pattern();
-  const double factorization = median_of([&] {
-    return seconds_of([&] {
-      system.stiffness(cloth.start.q, k);
-      newton.factorize_positive(1, h * h, k);
-    });
-  });
-  return {nodes, cloth.drawn.springs.size(), iteration, setup, factorization};
-}
-
-// Writes speed.csv: what local_global takes for one iteration and before the first one, and one of
-// Newton's iterations to assemble and factorise its matrix. They are medians of `repeats`
-// measurements, with steps of h [s], of cloths of 33, 65 and 101 nodes along a side whose stiffness
-// [N/m] grows in proportion. Returns the exit status.
-int time_iterations(Program& p, double stiffness, double h, int repeats,
-                    const nlohmann::json& origin) {
-  auto& table = p.table<SpeedRow>("speed.csv", {{"nodes", &SpeedRow::nodes},
-                                                {"springs", &SpeedRow::springs},
-                                                {"iteration_s", &SpeedRow::iteration},
-                                                {"setup_s", &SpeedRow::setup},
-                                                {"factorization_s", &SpeedRow::factorization}});
-  return p.study(
-      origin.at("scene"),
-      [&](Study& study) {
-        fmt::print("{:>6} {:>8} {:>13} {:>10} {:>17}\n", "nodes", "springs", "iteration ms",
-                   "set-up ms", "factorisation ms");
-        for (const int nodes : {standard_nodes, 65, 101}) {
-          const double k = stiffness * (nodes - 1) / (standard_nodes - 1.0);
-          const SpeedRow row = study.piece(fmt::format("speed {}", nodes), [&] {
-            return nlohmann::json(measured_speed(nodes, k, h, repeats));
-          });
-          table.add(row);
-          fmt::print("{:>6} {:>8} {:>13.4f} {:>10.3f} {:>17.3f}\n", row.nodes, row.springs,
-                     1e3 * row.iteration, 1e3 * row.setup, 1e3 * row.factorization);
-        }
-      },
-      [&] { return origin; });
-}
-
-}  // namespace
-}  // namespace qddot::local_global
 
 int main(int argc, char** argv) {
   using namespace qddot;
@@ -207,34 +79,8 @@ int main(int argc, char** argv) {
     return json;
   };
   const auto measure_steps = [&] {
-    const auto step_table = [&](const std::string& file, const std::string& varied,
-                                const Columns<StepRow>& last) -> RowTable<StepRow>& {
-      Columns<StepRow> columns = {};
-      if (!varied.empty()) columns += {{varied, &StepRow::varied}};
-      columns += {{"solver", &StepRow::solver},
-                  {"iteration", &StepRow::iteration},
-                  {"seconds", &StepRow::seconds}};
-      columns += last;
-      return p.table(file, columns);
-    };
-    const Columns<StepRow> error = {{"relative_error", &StepRow::relative_error}};
-    auto& convergence = step_table("convergence.csv", "", error);
-    auto& positions =
-        step_table("positions.csv", "",
-                   {{"distance_to_converged", &StepRow::distance}, {"step_error", &StepRow::own}});
-    auto& by_stiffness = step_table("stiffness.csv", "stiffness", error);
-    auto& by_resolution = step_table("resolution.csv", "nodes", error);
-    auto& run = p.table<RunRow>("run.csv", {{"solver", &RunRow::solver},
-                                            {"iterations", &RunRow::iterations},
-                                            {"seconds", &RunRow::seconds},
-                                            {"position_error", &RunRow::position_error},
-                                            {"energy_change", &RunRow::energy_change}});
-    // Adds one step of one cloth to a table, and its setup to the table's sidecar.
-    const auto add = [](RowTable<StepRow>& table, const Comparison& step,
-                        const nlohmann::json& setup) {
-      for (const StepRow& row : step.rows) table.add(row);
-      table.note({{"setup", setup}});
-    };
+    StepTables tables(p);
+    auto& run = run_table(p);
     const auto piece = [](Study& study, const std::string& name, const auto& make) {
       progress().now_at(name);
       const nlohmann::json made = study.piece(name, [&] { return nlohmann::json(make()); });
@@ -250,7 +96,7 @@ int main(int argc, char** argv) {
                        false);
       });
       setup[fmt::format("{:g}", value)] = cloth.setup;
-      add(table, cloth, setup);
+      StepTables::add(table, cloth, setup);
     };
     return p.study(
         origin().at("scene"),
@@ -260,8 +106,8 @@ int main(int argc, char** argv) {
           const Comparison step = piece(study, "step", [&] {
             return compare(SwingingCloth(nodes, stiffness, swing), h, iterations, repeats, 0, true);
           });
-          for (RowTable<StepRow>* table : {&convergence, &positions}) {
-            add(*table, step, step.setup);
+          for (RowTable<StepRow>* table : {&tables.convergence, &tables.positions}) {
+            StepTables::add(*table, step, step.setup);
             table->note({{"step_error", step.step_error}});
           }
           print(step, h);
@@ -270,9 +116,9 @@ int main(int argc, char** argv) {
 
           nlohmann::json setups, setups_of_sizes;
           for (const double k : *stiffnesses)
-            compare_cloth(study, by_stiffness, "stiffness", k, nodes, k, setups);
+            compare_cloth(study, tables.stiffness, "stiffness", k, nodes, k, setups);
           for (const int side : *resolutions) {
-            compare_cloth(study, by_resolution, "resolution", side, side,
+            compare_cloth(study, tables.resolution, "resolution", side, side,
                           stiffness * (side - 1) / (nodes - 1.0), setups_of_sizes);
           }
 

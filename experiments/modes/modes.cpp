@@ -7,104 +7,25 @@
 // has omega = -(growth rate); it has w^2 < 0, at a state that is no minimum of the energy. A mode
 // with w^2 = 0 within rounding has omega = 0.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
-#include "qddot/analysis/curvature_signs.hpp"
+#include "experiments/modes/spectrum.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
-#include "qddot/analysis/natural_modes.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::modes {
 namespace {
 
-constexpr int most_modes = 1000, most_printed = 10;
+constexpr int most_modes = 1000;
 
 bool is_at_equilibrium(const Argument<std::string>& at, const Scene& scene) {
   if (at->empty()) return scene.starts_at_equilibrium;
   if (*at == "drawn" || *at == "equilibrium") return *at == "equilibrium";
   throw InvalidInput(fmt::format("--at: {} is not allowed; it is drawn or equilibrium", *at));
-}
-
-// Angular frequency [rad/s], or minus the rate of growth [1/s].
-double omega(double square) { return std::copysign(std::sqrt(std::abs(square)), square); }
-
-// Both ends of the spectrum, by rank.
-struct Spectrum {
-  Index finite;
-  CurvatureSigns signs;          // by rank: growing modes, then those hidden by rounding
-  NaturalModes lowest, highest;  // of `count` modes each, if there are so many; highest: the others
-
-  Spectrum(const ReducedScene& scene, Index count)
-      : finite(finite_modes(scene.system())),
-        signs(curvature_signs(scene.system(), scene.initial().q)) {
-    const Vec& q = scene.initial().q;
-    lowest = lowest_modes(scene.system(), q, 2 * count >= finite ? finite : count);
-    highest = highest_modes(scene.system(), q, std::min(count, finite - lowest.squares.size()));
-    for (Index rank = signs.negative; rank < std::min<Index>(signs.negative + signs.flat, finite);
-         ++rank) {
-      const Index high = rank - (finite - highest.squares.size());
-      if (rank < lowest.squares.size()) lowest.squares[rank] = 0;
-      if (high >= 0) highest.squares[high] = 0;
-    }
-  }
-};
-
-// Prints the lowest modes and the highest one.
-void print(const Spectrum& spectrum) {
-  fmt::print("{:>6}  {:>14}  {:>14}\n", "mode", "omega in rad/s", "frequency in Hz");
-  const auto row = [](Index rank, double square) {
-    const double w = omega(square);
-    fmt::print("{:>6}  {:>14.6g}  {:>14.6g}{}\n", rank, w, w / (2 * M_PI), w < 0 ? "  grows" : "");
-  };
-  const Vec &low = spectrum.lowest.squares, &high = spectrum.highest.squares;
-  const Index shown = std::min<Index>(low.size(), most_printed);
-  for (Index j = 0; j < shown; ++j) row(j + 1, low[j]);
-  if (shown < spectrum.finite) {
-    fmt::print("{:>6}\n", "...");
-    row(spectrum.finite, high.size() > 0 ? high[high.size() - 1] : low[low.size() - 1]);
-  }
-}
-
-// Writes modes.csv: rank, angular frequency [rad/s] and frequency [Hz].
-void write_spectrum(CsvFile& csv, const Spectrum& spectrum) {
-  const auto rows = [&](Index first_rank, const Vec& squares) {
-    for (Index j = 0; j < squares.size(); ++j) {
-      const double w = omega(squares[j]);
-      csv.row(first_rank + j, w, w / (2 * M_PI));
-    }
-  };
-  rows(1, spectrum.lowest.squares);
-  rows(spectrum.finite - spectrum.highest.squares.size() + 1, spectrum.highest.squares);
-}
-
-// The columns and rows of shapes.csv: the positions of all nodes and, in each mode, their
-// displacements.
-std::vector<std::string> shape_header(int dimension) {
-  std::vector<std::string> header = {"mode", "node"};
-  for (const char* kind : {"", "d"}) {
-    for (int d = 0; d < dimension; ++d) header.push_back(fmt::format("{}{}", kind, "xyz"[d]));
-  }
-  return header;
-}
-
-void write_shapes(CsvFile& csv, const ReducedScene& scene, const Eigen::MatrixXd& shapes) {
-  for (Index j = 0; j < shapes.cols(); ++j) {
-    // A displacement goes through the reduction as a velocity does.
-    const auto nodes = scene.expand({0, scene.initial().q, shapes.col(j)});
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      csv.field(j + 1);
-      csv.field(i);
-      for (int d = 0; d < scene.dimension(); ++d) csv.field(nodes[i].position[d]);
-      for (int d = 0; d < scene.dimension(); ++d) csv.field(nodes[i].velocity[d]);
-      csv.end_row();
-    }
-    csv.flush_if_large();
-  }
 }
 
 }  // namespace

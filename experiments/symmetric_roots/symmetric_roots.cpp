@@ -14,18 +14,13 @@
 //   energy_swing  the largest energy error over the largest kinetic energy on the scene orbit, in
 //                 5000 steps at each of eight h w from half of --at to --at; 1: a run was ended
 // The last three are empty if the limit is not above --at.
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "experiments/kit/program.hpp"
-#include "experiments/symmetric_roots/orbit_swing.hpp"
-#include "integrators/methods/tables.hpp"
-#include "qddot/measure/motion/interruption.hpp"
+#include "experiments/symmetric_roots/formula_points.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::spurious_roots {
@@ -35,67 +30,6 @@ constexpr int least_k = 4, most_k = 12;
 constexpr int steps_of_orbit = 5000;
 constexpr double well_apart = 0.2;  // [rad]
 constexpr double much = 0.1;        // of an energy swing
-constexpr int h_omegas_of_gap = 8;
-
-// A row of roots.csv: one formula. The last three are NaN if it is not stable at the h w `at`.
-struct FormulaPoint {
-  int steps;
-  std::string method;  // empty where it is none of the registry's
-  std::vector<double> cosines;
-  double limit, phase_error, gap, energy_swing;
-};
-
-FormulaPoint point_of(const Coefficients& formula, std::vector<double> cosines, std::string method,
-                      double at, const OrbitSwing& orbit) {
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
-  FormulaPoint point{.steps = formula.steps(),
-                     .method = std::move(method),
-                     .cosines = std::move(cosines),
-                     .limit = stability_limit(formula),
-                     .phase_error = nothing,
-                     .gap = nothing,
-                     .energy_swing = nothing};
-  if (point.limit > at) {
-    point.phase_error = phase_error(formula, at);
-    std::vector<double> h_omegas;
-    for (int i = 1; i <= h_omegas_of_gap; ++i) h_omegas.push_back(at * i / h_omegas_of_gap);
-    point.gap = root_gap(formula, h_omegas);
-    point.energy_swing = orbit(formula);
-  }
-  return point;
-}
-
-// The registry's formulas.
-std::vector<FormulaPoint> registered_points(double at, const OrbitSwing& orbit) {
-  std::vector<FormulaPoint> points;
-  for (const SymmetricFormula* formula :
-       {&registered::symmetric4_formula(), &registered::symmetric6_formula(),
-        &registered::symmetric8_formula(), &registered::symmetric10_formula()}) {
-    std::vector<double> cosines;
-    for (const auto cosine : cosines_of_roots(formula->cofactor())) {
-      cosines.push_back(cosine.real());
-    }
-    std::ranges::sort(cosines, std::greater());
-    points.push_back(point_of(coefficients_of(*formula), cosines,
-                              fmt::format("symmetric{}", formula->steps), at, orbit));
-  }
-  return points;
-}
-
-// Formulas of so many steps, `samples` for each of their pairs of roots: the more pairs, the more
-// sets it takes to fill their space. Throws Interrupted.
-std::vector<FormulaPoint> sampled_points(int steps, int samples, double at,
-                                         const OrbitSwing& orbit) {
-  const int pairs = steps / 2 - 1;
-  std::vector<FormulaPoint> points;
-  for (int i = 1; i <= pairs * samples; ++i) {
-    stop_if_interrupted();
-    progress().now_at(fmt::format("formulas of {} steps, {} of {}", steps, i, pairs * samples));
-    const std::vector<double> cosines = sampled_cosines(i, pairs);
-    points.push_back(point_of(formula_of_cosines(cosines), cosines, "", at, orbit));
-  }
-  return points;
-}
 
 void require_h_omega(double at, const std::string& option) {
   constexpr double least = 0.01, most = 2;  // no formula of more than two steps has more
