@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <set>
 
 #include <Eigen/Geometry>
 

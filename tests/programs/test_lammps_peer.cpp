@@ -1,5 +1,4 @@
 // LAMMPS beside our own velocity Verlet, step for step; what needs LAMMPS is skipped without it.
-#include <cmath>
 #include <fstream>
 #include <random>
 #include <sys/stat.h>

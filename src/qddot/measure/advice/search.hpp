@@ -54,6 +54,10 @@ class Search {
   // number of steps that the order predicts, or one step if the method was not tried. Empty if that
   // takes `seconds` or more. Needs a forecast.
   std::optional<Candidate> more_steps(const Method& method, double accuracy, double seconds) const;
+  // Tries explicit runs that are expected to be too coarse, the least coarse first. Errors change
+  // sign, so that one of them may be accurate by chance. Each is compared with checked runs and
+  // does not correct the forecast. Returns the fastest run that is known to reach the accuracy.
+  const Trial* gamble(const Trial* answer, double accuracy, double seconds);
   // Makes the run unless it was made before, for `seconds` at most.
   void try_once(const Candidate& candidate, double seconds);
 
@@ -130,7 +134,6 @@ class Search {
   std::optional<Candidate> unknown(const Trial& answer, double accuracy, double left) const;
   std::optional<Candidate> promised(double accuracy, double seconds, bool explicitly) const;
   std::optional<Candidate> unseen(double accuracy, double seconds) const;
-  const Trial* gamble(const Trial* answer, double accuracy, double seconds);
   std::optional<Candidate> lead(double accuracy, double seconds) const;
   bool survey_by_verlet();
   void survey_again();

@@ -149,9 +149,6 @@ const Trial* Search::race(const Trial* answer, double accuracy, double seconds) 
              : answer;
 }
 
-// Tries explicit runs that are expected to be too coarse, the least coarse first. Errors change
-// sign, so that one of them may be accurate by chance. Each is compared with checked runs and does
-// not correct the forecast.
 const Trial* Search::gamble(const Trial* answer, double accuracy, double seconds) {
   constexpr double most = 300, coarser = 2;
   const double end = seconds_since(begin_) + seconds;
