@@ -18,6 +18,10 @@
 namespace qddot::motions {
 namespace {
 
+// Frames times nodes that a motion has unless more frames are asked for.
+constexpr double most_positions = 6e5;
+constexpr int fewest_frames = 20, usual_frames = 100;
+
 const std::vector<std::string> columns = {"file",
                                           "role",
                                           "method",
@@ -102,6 +106,17 @@ TimedRun timed_run(const ReducedScene& scene, double until, const Method& method
 }
 
 }  // namespace
+
+std::vector<double> frame_times(double until, int frames) {
+  std::vector<double> times;
+  for (int i = 0; i <= frames; ++i) times.push_back(i == frames ? until : until * i / frames);
+  return times;
+}
+
+int usual_number_of_frames(std::size_t nodes) {
+  const double fit = most_positions / static_cast<double>(std::max<std::size_t>(nodes, 1));
+  return static_cast<int>(std::clamp<double>(fit, fewest_frames, usual_frames));
+}
 
 KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const ReducedScene& scene,
                          std::vector<double> times, const nlohmann::json& origin)

@@ -70,4 +70,10 @@ class KeptMotions {
   double bytes_ = 0;
 };
 
+// The times [s] of the frames of a motion: 0 and the ends of `frames` equal parts of the time.
+std::vector<double> frame_times(double until, int frames);
+// The number of frames after the start that a motion of so many nodes has unless more are asked
+// for.
+int usual_number_of_frames(std::size_t nodes);
+
 }  // namespace qddot::motions

@@ -37,27 +37,10 @@ namespace {
 // Runs, bytes of their motions and seconds that a folder gets unless more runs are asked for.
 constexpr std::size_t most_runs = 120;
 constexpr double most_bytes = 256e6, most_seconds = 60;
-constexpr int largest_count = 10000;  // runs or frames
-// Frames times nodes that a motion has unless more frames are asked for.
-constexpr double most_positions = 6e5;
-constexpr int fewest_frames = 20, usual_frames = 100;
+constexpr int largest_count = 10000;        // runs or frames
 constexpr double longest_run = 10;          // [s]
 constexpr double longest_reference = 15;    // [s]
 constexpr double patience_with_a_run = 30;  // [s], after an interruption
-
-// The times [s] of the frames of a motion: 0 and the ends of `frames` equal parts of the time.
-std::vector<double> frame_times(double until, int frames) {
-  std::vector<double> times;
-  for (int i = 0; i <= frames; ++i) times.push_back(i == frames ? until : until * i / frames);
-  return times;
-}
-
-// The number of frames after the start that a motion of so many nodes has unless more are asked
-// for.
-int usual_number_of_frames(std::size_t nodes) {
-  const double fit = most_positions / static_cast<double>(std::max<std::size_t>(nodes, 1));
-  return static_cast<int>(std::clamp<double>(fit, fewest_frames, usual_frames));
-}
 
 // Keeps the runs, the most telling first, until they are enough.
 void keep(const std::vector<ChosenRun>& runs, bool all, const Options& options,

@@ -17,9 +17,7 @@
 //     a process was killed, and two processes that measure the same task do no harm.
 //  3. merge gives each scene's files to the program, which makes its tables as if it had measured
 //     them by itself. Times of unlike machines are never compared.
-#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <sys/wait.h>
 
@@ -60,96 +58,6 @@ void require_action(const Program& program, const std::string& action, const std
   }
   require_given(where, action == "plan" ? "STUDY.toml" : "the sweep's folder",
                 action == "plan" ? "the study's file" : "what sweep plan --out made");
-}
-
-// How a sweep is divided among processes.
-struct Submission {
-  std::size_t shards = 100;            // at most, of points
-  std::vector<std::string> options{};  // of sbatch, or of parallel
-};
-
-// How many shards each stage is divided into: no more than it has tasks.
-struct Division {
-  Division(const std::string& folder, std::size_t most) {
-    for (const Task& task : read_tasks(folder)) {
-      std::size_t& shards = task.stage == sweep::references ? references : points;
-      shards = std::min(shards + 1, most);
-    }
-  }
-  std::size_t references = 0, points = 0;
-};
-
-std::string absolute(const std::string& folder) {
-  return std::filesystem::absolute(folder).lexically_normal().string();
-}
-
-std::string joined(const std::vector<std::string>& options) {
-  std::string text;
-  for (const std::string& word : options) text += " " + shell_word(word);
-  return text;
-}
-
-Command run_of(const std::string& folder, const std::string& stage) {
-  return {program_path("sweep"), "run", absolute(folder), "--stage", stage, "--progress", "plain"};
-}
-
-std::string merge_of(const std::string& folder) {
-  return shell_line({program_path("sweep"), "merge", absolute(folder), "--progress", "plain"});
-}
-
-// One sbatch, whose job's number goes into a variable of its name.
-std::string sbatch(const std::string& folder, const std::string& name, const std::string& own,
-                   const Submission& how, const std::string& script) {
-  const std::string log =
-      absolute(folder) + "/log/" + name + (own.find("--array") == own.npos ? "" : "-%a") + ".txt";
-  return fmt::format(
-      "{0}=$(sbatch --parsable --job-name=qddot-{0} --ntasks=1 --cpus-per-task=1 "
-      "--threads-per-core=1 --requeue --open-mode=append --output={1}{2}{3} --wrap={4}) && echo "
-      "\"{0}: job ${0}\"\n",
-      name, shell_word(log), own, joined(how.options), shell_word(script));
-}
-
-std::string array_script(const std::string& folder, const std::string& stage, std::size_t count) {
-  return fmt::format("exec {} --shard \"$SLURM_ARRAY_TASK_ID/{}\"",
-                     shell_line(run_of(folder, stage)), count);
-}
-
-// Three lines of a shell that make Slurm run a sweep:
-// - an array of jobs for the references,
-// - an array for the points, which waits for the success of all references,
-// - the merge, which waits for the end of the points, successful or not: a shard with a failed task
-//   is a failed job to Slurm.
-// Each job gets a core of its own, without another thread on it. The user's options for sbatch come
-// last and override these.
-std::string slurm_lines(const std::string& folder, const Submission& how) {
-  const Division division(folder, how.shards);
-  kit::require_folder(folder + "/log");
-  std::string lines, after;
-  if (division.references > 0) {
-    lines += sbatch(folder, "references", fmt::format(" --array=1-{}", division.references), how,
-                    array_script(folder, references, division.references));
-    after = " --dependency=afterok:\"$references\" --kill-on-invalid-dep=yes";
-  }
-  lines += sbatch(folder, "points", fmt::format(" --array=1-{}{}", division.points, after), how,
-                  array_script(folder, points, division.points));
-  lines += sbatch(folder, "merge", " --dependency=afterany:\"$points\"", how,
-                  "exec " + merge_of(folder));
-  return lines;
-}
-
-// The same with GNU parallel: one process a core, here or, with --sshlogin, on others that see the
-// folder under the same path.
-std::string parallel_lines(const std::string& folder, const Submission& how) {
-  const Division division(folder, how.shards);
-  const auto line = [&](const std::string& stage, std::size_t count) {
-    return fmt::format(
-        "seq {0} | parallel --use-cores-instead-of-threads --line-buffer{1} {2}", count,
-        joined(how.options),
-        shell_word(fmt::format("{} --shard {{}}/{}", shell_line(run_of(folder, stage)), count)));
-  };
-  std::string lines;
-  if (division.references > 0) lines += line(references, division.references) + " &&\n";
-  return lines + line(points, division.points) + "\n" + merge_of(folder) + "\n";
 }
 
 // The words after --slurm or --parallel that are not sweep's own go to those as they are.

@@ -1,0 +1,203 @@
+#include "experiments/simulate/run.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/kit/interruptible.hpp"
+#include "experiments/kit/provenance.hpp"
+#include "experiments/simulate/outputs.hpp"
+#include "experiments/simulate/pace.hpp"
+#include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/speed/chart_words.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/measure/stability/diagnosis.hpp"
+#include "qddot/scene/invalid_input.hpp"
+
+namespace qddot::simulate {
+namespace {
+
+// The time [s] for explaining why a run failed: some twenty times the run's, between these limits.
+constexpr double shortest_patience = 1, longest_patience = 5;
+
+// The time [s] that an interruption waits for the present step.
+constexpr double patience_with_a_step = 60;
+
+// The time [s] that an interruption waits for the results found so far.
+constexpr double patience_with_an_answer = 60;
+
+void refuse_choices(const Program& program) {
+  for (const char* option :
+       {"--method", "--step-size", "--rtol", "--atol", "--max-order", "--stability-detection",
+        "--iterations", "--solve-tolerance", "--spectral-radius", "--solver"}) {
+    if (program.has(option)) {
+      throw InvalidInput(fmt::format(
+          "{} is not for --accuracy, which chooses the method and its knob: leave out one of both",
+          option));
+    }
+  }
+}
+
+// Repeats the method's run for the outputs on its way; returns its end.
+State seen(const Answer& answer, const std::shared_ptr<const ReducedScene>& model, double until,
+           Outputs& output) {
+  Simulation run(model, *answer.method, options_for(*answer.method, answer.value, *model));
+  output.see(run.state());
+  run.advance(until, output.observer(), interruption());
+  return run.state();
+}
+
+// Numbers that are not finite become null where this is written.
+nlohmann::json about(const Answer& answer, const Arguments& a) {
+  return {{"accuracy", *a.accuracy},
+          {"accuracy_of", a.accuracy_of->empty() ? "positions" : *a.accuracy_of},
+          {"is_reached", answer.is_reached},
+          {"why", answer.why},
+          {"method", answer.method->name},
+          {"knob", knob_name(answer.method->knob)},
+          {"value", answer.value},
+          {"error_estimate", answer.error_estimate},
+          {"error_estimate_kind", name(answer.error_estimate_kind)},
+          {"horizon", answer.horizon},
+          {"lyapunov", answer.lyapunov},
+          {"advised_by", name(answer.advised_by)},
+          {"runs", answer.runs},
+          {"seconds", answer.seconds.total()},
+          {"seconds_by_phase",
+           {{"pilots", answer.seconds.pilots},
+            {"run", answer.seconds.run},
+            {"check", answer.seconds.check}}}};
+}
+
+std::string estimate_in_words(const Answer& answer) {
+  switch (answer.error_estimate_kind) {
+    case EstimateKind::compared:
+      return fmt::format("error at most {:.1e}, as a more accurate run says",
+                         answer.error_estimate);
+    case EstimateKind::refined:
+      return fmt::format("error at most {:.1e}, as a coarser run of the same method says",
+                         answer.error_estimate);
+    case EstimateKind::conserved:
+      return fmt::format("energy error at most {:.1e}, as seen on the way", answer.error_estimate);
+    case EstimateKind::rounding:
+      return fmt::format("error at most {:.1e}, which is rounding", answer.error_estimate);
+    case EstimateKind::none:
+      break;
+  }
+  return "error unknown";
+}
+
+}  // namespace
+
+int answer(const Arguments& a) {
+  refuse_choices(a.p);
+  require_allowed_accuracy(a.accuracy);
+  const AccuracyOf of = accuracy_of(a.accuracy_of);
+  const Every every = every_of(a);
+  require_distinct_outputs(a);
+  Subject subject = subject_of(a.scene, a.until);
+  const auto model = std::make_shared<const ReducedScene>(std::move(subject.reduced));
+  const double until = subject.until;
+
+  Outputs output(a, every, subject.drawn, subject.start, *model, until);
+  wait_for_answer(patience_with_an_answer);
+  progress().stage("looking for the fastest run");
+  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of});
+  progress().wipe();
+  const auto why = answer.is_reached ? std::nullopt : interrupted();
+  if (!answer.method) {  // no run was begun
+    fmt::print(stderr, "simulate: {}\n", answer.why);
+    return why ? why->status : end_not_reached;
+  }
+  if (output.is_asked_for()) {
+    State end = answer.end;
+    if (output.looks_on_the_way()) end = seen(answer, model, until, output);
+    nlohmann::json origin = provenance(a.p.command_line(), subject.drawn, subject.start, *model);
+    origin["outcome"] = name(answer.summary.outcome);
+    origin["t_reached"] = end.t;
+    origin["energy_growth"] = answer.summary.energy_growth;
+    origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
+    origin.update(about(answer, a));
+    output.finish(end, origin);
+  }
+  fmt::print(
+      "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check, {} to find them "
+      "({} run{} in all)\n",
+      in_one_line(subject.drawn.name), until, answer.method->name,
+      knob_in_words(*answer.method, answer.value), estimate_in_words(answer),
+      time_in_words(answer.seconds.run), time_in_words(answer.seconds.check),
+      time_in_words(answer.seconds.pilots), answer.runs, answer.runs == 1 ? "" : "s");
+  if (answer.is_reached) return done;
+  fmt::print(stderr, "simulate: --accuracy {:g} was not reached: {}\n", *a.accuracy, answer.why);
+  return why ? why->status : end_not_reached;
+}
+
+int run_method(const Arguments& a) {
+  if (a.accuracy_of.is_given()) {
+    throw InvalidInput("--accuracy-of is given without --accuracy, which it belongs to");
+  }
+  const Method& method = require_method(a.method);
+  const Options options = checked_options(a, method);
+  const Every every = every_of(a);
+  require_distinct_outputs(a);
+  const Scene drawn = load(a.scene);
+  const double until = end_time(a.until, a.until.is_given(), drawn);
+  if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
+  const Scene start = started(drawn, a.scene);
+  const auto model =
+      std::make_shared<const ReducedScene>(reduced_for(method, start, reductions_of(a.scene)));
+  const ReducedScene& scene = *model;
+  require_fit(method, scene, a.scene->name);
+  Simulation run(model, method, options);
+  require_atol(run.options());
+
+  Outputs output(a, every, drawn, start, scene, until);
+  output.see(run.state());
+  const auto warn = [](const std::string& warning) {
+    if (!warning.empty()) fmt::print(stderr, "simulate: warning: {}\n", warning);
+  };
+  warn(tolerance_warning(run.options()));
+  Summary summary;
+  wait_for_answer(patience_with_a_step);
+  const double seconds = seconds_of([&] {
+    const Pace pace(run, until);
+    summary = run.advance(until, output.observer(), interruption());
+  });
+  const auto why = summary.outcome == Outcome::over_budget ? interrupted() : std::nullopt;
+
+  if (output.is_asked_for()) {
+    nlohmann::json origin = provenance(a.p.command_line(), drawn, start, scene);
+    origin["outcome"] = name(summary.outcome);
+    origin["t_reached"] = summary.t_reached;
+    origin["energy_growth"] = summary.energy_growth;
+    origin["seconds"] = seconds;
+    origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
+    output.finish(run.state(), origin);
+  }
+  fmt::print("{} on {}: {} at t = {:g} s after {}, in {:.3g} s\n", method.name,
+             in_one_line(drawn.name), why ? "interrupted" : name(summary.outcome),
+             summary.t_reached, counts_in_words(summary.counts), seconds);
+  if (why) {
+    fmt::print(stderr, "simulate: interrupted by {}: {} of {} s reached\n", why->by,
+               summary.t_reached, until);
+    return why->status;
+  }
+  if (summary.outcome != Outcome::diverged) warn(growth_warning(method, summary));
+  if (summary.outcome == Outcome::reached_end) {
+    warn(step_warning(method, options, scene));
+    return done;
+  }
+  const double patience = std::clamp(20 * seconds, shortest_patience, longest_patience);
+  const std::string more = diagnosis(method, options, scene, until, summary, patience);
+  fmt::print(stderr, "simulate: {} of {} s reached: {}{}{}\n", summary.t_reached, until,
+             summary.message, more.empty() ? "" : "; ", more);
+  return end_not_reached;
+}
+
+}  // namespace qddot::simulate
