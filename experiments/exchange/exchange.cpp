@@ -32,12 +32,9 @@
 
 #include "experiments/exchange/exchange_results.hpp"
 #include "experiments/kit/allowed_options.hpp"
-#include "experiments/kit/points.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/reference_file.hpp"
-#include "qddot/measure/exchange/energy_exchange.hpp"
-#include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::exchange {

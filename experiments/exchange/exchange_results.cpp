@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/kit/points.hpp"
 #include "qddot/measure/exchange/energy_exchange.hpp"
 
 namespace qddot::exchange {
