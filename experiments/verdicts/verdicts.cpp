@@ -9,92 +9,19 @@
 //  2. coverage.csv: for each interval or bound that is printed, how often it holds what is true,
 //     with the 95 % interval of that (Wilson); and the size of a walk over the true one.
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "experiments/kit/program.hpp"
-#include "qddot/measure/motion/interruption.hpp"
+#include "experiments/verdicts/tally.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/trend/sample_steps.hpp"
-#include "qddot/measure/trend/synthetic_errors.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::verdicts {
-
-// How often something that is said with 95 % holds.
-struct Coverage {
-  int said = 0, held = 0;
-
-  void add(bool holds) {
-    ++said;
-    held += holds;
-  }
-  // The part that holds, with its 95 % interval: Wilson, J. American Statistical Association 22
-  // (1927) 209-212.
-  Interval interval() const {
-    const double n = said, p = held / n, z = 1.959964;
-    const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
-    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-    return {p, middle - half, middle + half};
-  }
-};
-
-// The verdicts on errors of one kind.
-struct Tally {
-  std::map<Verdict, int> verdicts;
-  std::map<std::string, Coverage> coverage;
-  double walk = 0;  // mean size over the true one
-
-  void add(const SyntheticKind& kind, const Trend& trend) {
-    constexpr double duration = synthetic_duration;
-    ++verdicts[trend.verdict];
-    if (kind.drift) {
-      coverage["drift_rate"].add(trend.drift.holds(*kind.drift / duration));
-      coverage["late_drift"].add(trend.late_drift.holds(*kind.drift / duration));
-    }
-    if (kind.rate && trend.rate.value != 0) {
-      coverage["exponential_rate"].add(trend.rate.holds(*kind.rate / duration));
-    }
-    if (kind.widening) coverage["widening"].add(trend.widening.holds(*kind.widening / duration));
-    if (kind.memory && trend.colour == Colour::undecided) {
-      coverage["memory_low"].add(trend.memory <= *kind.memory * duration);
-    }
-    if (kind.period && *kind.period >= 1 && trend.slow_period > 0) {
-      coverage["slow_period_low"].add(trend.slow_period <= *kind.period * duration);
-    }
-    if (kind.walk) walk += trend.walk * std::sqrt(duration) / *kind.walk;
-  }
-};
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Coverage, said, held)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Tally, verdicts, coverage, walk)
-
 namespace {
-
-// "right", "wrong", or "uncertain" if the verdict claims nothing.
-const char* judgement(const SyntheticKind& kind, Verdict verdict) {
-  if (std::ranges::count(kind.right, verdict) > 0) return "right";
-  const bool claims_nothing = verdict == Verdict::undecided || verdict == Verdict::unknown;
-  return claims_nothing ? "uncertain" : "wrong";
-}
-
-// The verdicts on `seeds` errors of that kind, each seen with so many cells in an octave. Throws
-// Interrupted.
-Tally tally(const SyntheticKind& kind, int seeds, int cells) {
-  std::vector<Trend> trends(static_cast<std::size_t>(seeds));
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t seed = 0; seed < trends.size(); ++seed) {
-    if (!interrupted()) trends[seed] = synthetic_trend(kind, seed, cells);
-  }
-  Tally result;
-  stop_if_interrupted();
-  for (const Trend& trend : trends) result.add(kind, trend);
-  result.walk /= seeds;
-  return result;
-}
 
 std::vector<SyntheticKind> chosen_kinds(const std::vector<std::string>& names) {
   std::vector<SyntheticKind> all = synthetic_kinds();
