@@ -1,4 +1,4 @@
-"""What is said on a page of Markdown, taken apart: sentences, tables, headings, commands, numbers."""
+"""What is said on a page of Markdown, taken apart: tables, headings, commands, numbers."""
 
 import re
 
@@ -13,27 +13,6 @@ def without_code(text):
     """The text without code blocks, code in lines, and comments."""
     text = re.sub(r"<!--.*?-->", "", FENCE.sub("", text), flags=re.DOTALL)
     return re.sub(r"`[^`\n]*`", "CODE", text)
-
-
-def prose(text):
-    """The paragraphs and items of lists: no headings, tables, pictures or code."""
-    kept = []
-    for line in without_code(text).splitlines():
-        is_other = re.match(r"\s*(\||#|!\[|\(?\+?```)", line)
-        kept.append("" if is_other else re.sub(r"^\s*(?:[-*]|\d+\.)\s+", "\n", line))
-    return "\n".join(kept)
-
-
-def sentences(text):
-    """The sentences of the prose, links by their words. A paragraph or an item ends one."""
-    found = []
-    for paragraph in re.split(r"\n\s*\n", prose(text)):
-        words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", " ".join(paragraph.split()))
-        words = re.sub(r"\(CODE(?:[^()]|\([^()]*\))*\)", "", words)  # the command behind a number
-        found += [
-            s for s in re.split(r"(?<=[.:;!?])\s+(?=[A-Z0-9*\[(])", words) if len(s.split()) > 2
-        ]
-    return found
 
 
 def table_heads(text):
