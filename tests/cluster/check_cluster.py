@@ -12,6 +12,7 @@ found.
 """
 
 import concurrent.futures
+import difflib
 import glob
 import os
 import re
@@ -20,7 +21,8 @@ import sys
 import tempfile
 import time
 
-from programs import header, table, words_of, write
+from check_sweep import untimed
+from programs import header, words_of, write
 
 # No run of these methods comes near the limit of time, so that no point depends on the machine's
 # speed. All of them are of order 2 or more: others need billions of steps for the last digits.
@@ -43,7 +45,6 @@ repeats = 1
 """
 SHARDS = 4
 NODE = "node2"
-MEASURED = {"time_s", "time_min_s", "setup_s", "timed_runs"}
 
 
 class Fault(Exception):
@@ -160,32 +161,14 @@ def jobs_that_failed(ids):
     ]
 
 
-def points_in(path):
-    """A table's points by scene, method, knob and value, without measured times."""
-    points = {}
-    for row in table(path):
-        key = tuple(str(row[name]) for name in ("scene", "method", "knob", "value"))
-        if key in points:
-            raise Fault(f"{path}: {' '.join(key)} is there twice")
-        points[key] = {name: row[name] for name in row if name not in MEASURED}
-    return points
-
-
 def in_one_process():
     """Runs the study's scenes without a cluster; the points and the header of their table."""
-    points = {}
+    points = []
     for name, scene in SCENES.items():
         line = f"work_precision --scene {scene} {MEASURES} --progress none --out one/{name}"
         said_by(words_of(line))
-        points |= points_in(f"one/{name}/points.csv")
-    return points, header(f"one/{name}/points.csv")
-
-
-def differences(one, many):
-    """A line for each difference between two sets of points."""
-    for key in sorted({*one, *many}):
-        if one.get(key) != many.get(key):
-            yield f"{' '.join(key)}: {one.get(key)} in one process, {many.get(key)} in the cluster"
+        points += untimed(f"one/{name}/points.csv")
+    return sorted(points), header(f"one/{name}/points.csv")
 
 
 def check(script):
@@ -226,7 +209,8 @@ def check(script):
         raise Fault("\n".join(["there is no points.csv", *found]))
     if header("S/points.csv") != columns:
         found.append(f"{columns} in one process, in the cluster {header('S/points.csv')}")
-    found += differences(one, points_in("S/points.csv"))
+    many = untimed("S/points.csv")
+    found += difflib.unified_diff(one, many, "one process", "the cluster", n=0, lineterm="")
     found += [f"{part} is left" for part in glob.glob("S/**/*.part", recursive=True)]
     if not one:
         found.append("there is no point")

@@ -39,13 +39,13 @@ class Tables(Programs):
         line = f"simulate --scene {path} --method verlet --step-size {STEP} --until {UNTIL} "
         return self.done(line + more)
 
-    def check_nodes(self, rows, t, tolerance=1e-12):
+    def check_nodes(self, rows, t):
         """Holds nodes against x + v t + g t^2 / 2, by the roundings of 500 steps."""
         for row, m, x, v in zip(rows, MASSES, POSITIONS, VELOCITIES, strict=True):
             for axis, x, v, g in zip("xyz", x, v, GRAVITY):
                 if axis in row:
-                    self.near(row[axis], x + (v * t + g * t * t / 2 if m else 0), tolerance)
-                    self.near(row["v" + axis], v + g * t if m else 0, 10 * tolerance)
+                    self.near(row[axis], x + (v * t + g * t * t / 2 if m else 0), 1e-12)
+                    self.near(row["v" + axis], v + g * t if m else 0, 1e-11)
 
     def test_tables_hold_all_nodes_and_energies_of_the_motion(self):
         for coordinates in "x,vx", "x,y,vx,vy", "x,y,z,vx,vy,vz":
@@ -76,11 +76,6 @@ class Tables(Programs):
                     self.assertEqual(energy["total"], energy["kinetic"] + energy["potential"])
                 self.assertEqual(final, rows)
                 self.assertEqual((final[1]["x"], final[1]["vx"]), (1.1, 0))
-
-    def test_adaptive_methods_write_the_same(self):
-        write("s.toml", falling(2))
-        self.done("simulate --scene s.toml --method ida --rtol 1e-8 --atol 1e-10 --final f.csv")
-        self.check_nodes(table("f.csv"), UNTIL, 1e-6)
 
     def test_each_output_has_the_every_behind_it_and_a_single_one_is_for_both(self):
         apart, together = (3, 6), (6, 6)
@@ -150,18 +145,6 @@ class Tables(Programs):
 
 
 class Scenes(Programs):
-    def test_where_all_is_pinned_nothing_moves_and_every_kind_of_method_is_done(self):
-        nodes = [pin(0, 1, 2, velocity=[1, 1, 1]), pin(3, 4, 5)]
-        springs = [spring(0, 1, 10, rest_length=1)]
-        write("s.toml", scene(nodes, springs, until=0.5, gravity=[0, 0, -9.81]))
-        line = "simulate --scene s.toml --final f.csv --energy e.csv --every 0.25 --method "
-        for method in ("verlet --step-size 0.01", "bdf2 --step-size 0.01", "ida --rtol 1e-4"):
-            self.done(line + method)
-            self.assertEqual(read("f.csv"), "node,x,y,z,vx,vy,vz\n0,0,1,2,0,0,0\n1,3,4,5,0,0,0\n")
-            for row in table("e.csv"):
-                self.assertEqual(row["kinetic"], 0)
-                self.near(row["total"], 5 * (math.sqrt(27) - 1) ** 2, 1e-12)
-
     def test_a_massless_node_is_for_methods_that_accept_it(self):
         # Two springs in series cannot be replaced by one if one of them is quartic.
         write("s.toml", in_series(quartic=1))
@@ -184,13 +167,6 @@ class Scenes(Programs):
         self.near(tip["x"], 2 + 0.5 * math.cos(math.sqrt(20) * 0.3), 2e-4)
         self.near(30 * (massless["x"] - 1), 60 * (tip["x"] - massless["x"] - 1), 1e-10)
         self.near(30 * massless["vx"], 60 * (tip["vx"] - massless["vx"]), 1e-10)
-
-    def test_the_horizon_is_the_scenes_own_unless_asked_for(self):
-        write("s.toml", scene([node(0, mass=1)], until=2))
-        line = "simulate --scene s.toml --method verlet --step-size 0.1 --energy e.csv --every 1"
-        for more, last in ("", 2), (" --until 3", 3):
-            self.done(line + more)
-            self.assertEqual(table("e.csv")[-1]["t"], last)
 
     def test_a_scene_that_starts_at_equilibrium_does(self):
         facts = {"gravity": [0, -10], "until": 0.5, "start": "equilibrium"}

@@ -176,10 +176,10 @@ class Programs(unittest.TestCase):
     def refused(self, line, *fragments):
         """Checks that the command line is refused in a sentence, and writes and prints no more."""
         with self.subTest(line):
-            before = sorted(os.listdir("."))
+            before = list(os.walk("."))
             ended = self.complains(line, 2, *fragments)
             self.assertEqual(ended.stdout, "")
-            self.assertEqual(sorted(os.listdir(".")), before)
+            self.assertEqual(list(os.walk(".")), before)
 
     def signalled(self, process, signal):
         """How a process ended after the signal."""
