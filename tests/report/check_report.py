@@ -73,7 +73,8 @@ class Contents(Folder):
         rows = self.rows()
         # So many slow methods before the others that some stay pale and take the last colours.
         slow = [row for row in rows if row["method"] == "explicit_euler"]
-        methods = self.data_of([row | {"method": m} for m in SLOW for row in slow] + rows)["methods"]
+        slow = [row | {"method": method} for method in SLOW for row in slow]
+        methods = self.data_of(slow + rows)["methods"]
         self.assertEqual({method["strong"] for method in methods}, {True, False})
         looks = emphasis.Prominent([read_record(self.folder).judged]).looks
         self.assertEqual(

@@ -142,9 +142,8 @@ def write_study(folder, scene, dimension, nodes, springs, displacement):
         for method in METHODS
         for value in (TOLERANCES if method.knob == "rtol" else STEP_SIZES)
     ]
-    write_table(folder / "points.csv", COLUMNS, rows)
-    margins = front(scene)
-    write_table(folder / "front.csv", list(margins[0]), margins)
+    write_table(folder / "points.csv", rows)
+    write_table(folder / "front.csv", front(scene))
     about = json.dumps(sidecar(scene, dimension, nodes, springs))
     (folder / "points.json").write_text(about)
     (folder / "front.json").write_text(about)

@@ -96,11 +96,6 @@ def edit_json(path, change):
     path.write_text(json.dumps(content))
 
 
-def rewrite(path, rows):
-    """Writes a table anew."""
-    write_table(path, list(rows[0]), rows)
-
-
 class Folder(unittest.TestCase):
     """A folder of results and its page."""
 
@@ -137,4 +132,4 @@ class Folder(unittest.TestCase):
 
     def rewrite(self, name, rows):
         """Writes a table anew."""
-        rewrite(self.folder / name, rows)
+        write_table(self.folder / name, rows)
