@@ -21,11 +21,8 @@ def cells_of(root, kind):
     offsets, nodes = group["Offsets"][...], group["Connectivity"][...]
     assert group["NumberOfCells"][...].tolist() == [len(offsets) - 1]
     assert group["NumberOfConnectivityIds"][...].tolist() == [len(nodes)]
-    assert offsets[0] == 0 and offsets[-1] == len(nodes)
-    assert (np.diff(offsets) == KINDS[kind]).all()
-    return [
-        tuple(int(k) for k in nodes[a:b]) for a, b in zip(offsets[:-1], offsets[1:], strict=True)
-    ]
+    assert offsets.tolist() == list(range(0, len(nodes) + 1, KINDS[kind]))
+    return [tuple(cell) for cell in nodes.reshape(-1, KINDS[kind]).tolist()]
 
 
 def check_layout(root, frames, nodes, cells):
