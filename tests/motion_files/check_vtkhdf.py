@@ -21,11 +21,8 @@ def cells_of(root, kind):
     offsets, nodes = group["Offsets"][...], group["Connectivity"][...]
     assert group["NumberOfCells"][...].tolist() == [len(offsets) - 1]
     assert group["NumberOfConnectivityIds"][...].tolist() == [len(nodes)]
-    assert offsets[0] == 0 and offsets[-1] == len(nodes)
-    assert (np.diff(offsets) == KINDS[kind]).all()
-    return [
-        tuple(int(k) for k in nodes[a:b]) for a, b in zip(offsets[:-1], offsets[1:], strict=True)
-    ]
+    assert offsets.tolist() == list(range(0, len(nodes) + 1, KINDS[kind]))
+    return [tuple(cell) for cell in nodes.reshape(-1, KINDS[kind]).tolist()]
 
 
 def check_layout(root, frames, nodes, cells):
@@ -44,15 +41,13 @@ def check_layout(root, frames, nodes, cells):
     assert steps["PartOffsets"][...].tolist() == [0] * frames
     for name in ("CellOffsets", "ConnectivityIdOffsets"):
         assert steps[name].shape == (frames, 4) and not steps[name][...].any()
-    starts = [k * nodes for k in range(frames)]
-    assert steps["PointOffsets"][...].tolist() == starts
-    assert sorted(steps["PointDataOffsets"]) == sorted(root["PointData"])
-    for name in root["PointData"]:
-        assert steps["PointDataOffsets"][name][...].tolist() == starts
-    assert sorted(steps["CellDataOffsets"]) == sorted(root["CellData"])
-    for name in root["CellData"]:
-        assert root["CellData"][name].shape == (frames * cells,)
-        assert steps["CellDataOffsets"][name][...].tolist() == [k * cells for k in range(frames)]
+    assert steps["PointOffsets"][...].tolist() == [k * nodes for k in range(frames)]
+    for kind, count in ("PointData", nodes), ("CellData", cells):
+        offsets = steps[f"{kind}Offsets"]
+        assert sorted(offsets) == sorted(root[kind])
+        for name, data in root[kind].items():
+            assert data.shape == (frames * count, *([3] if name == "velocity" else []))
+            assert offsets[name][...].tolist() == [k * count for k in range(frames)]
 
 
 def strains_of(drawn, positions):
@@ -97,13 +92,10 @@ def check_frames(stem, root_file, times):
 
 
 def cloth_faces(n):
-    cells = [(i, j) for i in range(n - 1) for j in range(n - 1)]
-    at = lambda i, j: i * n + j
-    faces = []
-    for i, j in cells:
-        faces.append((at(i, j), at(i + 1, j), at(i + 1, j + 1)))
-        faces.append((at(i, j), at(i + 1, j + 1), at(i, j + 1)))
-    return faces
+    """Two triangles a square of the net."""
+    corners = [i * n + j for i in range(n - 1) for j in range(n - 1)]
+    halves = (0, n, n + 1), (0, n + 1, 1)
+    return [tuple(corner + k for k in half) for corner in corners for half in halves]
 
 
 def large_scene(n):

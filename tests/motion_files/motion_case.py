@@ -4,6 +4,7 @@ back."""
 import os
 import shutil
 import xml.etree.ElementTree as ElementTree
+from itertools import islice
 from pathlib import Path
 
 import h5py
@@ -64,14 +65,10 @@ def assert_close(found, wanted, tolerance):
 
 def mixed_cells(numbers):
     """The cells of an XDMF topology of mixed kinds, in order."""
-    cells, at = [], 0
-    while at < len(numbers):
-        kind = numbers[at]
-        count = 3 if kind == 4 else numbers[at + 1]
-        start = at + (1 if kind == 4 else 2)
+    cells, left = [], iter(numbers.tolist())
+    for kind in left:
         assert kind in (1, 2, 4), kind
-        cells.append(tuple(int(node) for node in numbers[start : start + count]))
-        at = start + count
+        cells.append(tuple(islice(left, 3 if kind == 4 else next(left))))
     return cells
 
 

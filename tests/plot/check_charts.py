@@ -47,7 +47,7 @@ def crowd(count=14):
 
 def write_study(folder, rows, columns=COLUMNS, reference=None, **about):
     """The tables of a study with these rows, and their record."""
-    write_table(folder / "points.csv", columns, rows)
+    write_table(folder / "points.csv", rows, columns)
     (folder / "points.json").write_text(json.dumps(about))
     (folder / "reference.json").write_text(json.dumps(reference or {"until": 1}))
     judge(folder)

@@ -55,8 +55,8 @@ class Sweep(HandMade):
         """A sweep over these scenes; without rows each has one method at all accuracies."""
         self.write_scenes(scenes)
         rows = rows or [a_cell(name, accuracy) for name in scenes for accuracy in ACCURACIES]
-        write_table(self.folder / "fastest.csv", FASTEST, rows)
-        write_table(self.folder / "crossovers.csv", CROSSOVERS, crossovers)
+        write_table(self.folder / "fastest.csv", rows, FASTEST)
+        write_table(self.folder / "crossovers.csv", crossovers, CROSSOVERS)
         if about:
             (self.folder / "sweep.json").write_text(json.dumps(about))
 
@@ -105,7 +105,7 @@ class WhatIsSaid(Sweep):
         # A cell that nobody asked for is no failure, unlike one without a method.
         self.assertNotIn("–", texts)
         nobody = [a_cell("a", accuracy, "") for accuracy in ACCURACIES]
-        write_table(self.folder / "fastest.csv", FASTEST, nobody)
+        write_table(self.folder / "fastest.csv", nobody, FASTEST)
         self.assertEqual(self.texts().count("–"), 4)
 
     def test_a_folder_that_cannot_be_read_is_left_out_and_counted(self):
@@ -158,7 +158,7 @@ class WhatIsSaid(Sweep):
         (self.folder / "a" / "reference.json").write_text(json.dumps(known))
         path = self.folder / "a" / "points.csv"
         rows = [row | {"error_position": "1"} for row in read_table(path)]
-        write_table(path, list(rows[0]), rows)
+        write_table(path, rows)
         judge(self.folder / "a")
         texts = self.texts()
         for words in ("2 nodes, 2 s, 200 steps, by energy", "error at most", "0.3 ×"):
@@ -172,9 +172,9 @@ class Refusals(Sweep):
     def test_no_table(self):
         self.assertEqual(draw("sweep/sweep.py"), (2, "Usage: sweep.py DIR\n"))
         self.assertEqual(self.refusal(), "fastest.csv cannot be read: No such file or directory.")
-        write_table(self.folder / "fastest.csv", FASTEST, [])
+        write_table(self.folder / "fastest.csv", [], FASTEST)
         self.assertEqual(self.refusal(), "fastest.csv has no rows.")
-        write_table(self.folder / "fastest.csv", FASTEST[:-1], [])
+        write_table(self.folder / "fastest.csv", [], FASTEST[:-1])
         self.assertEqual(self.refusal(), "fastest.csv has no column judged_by.")
 
     def test_broken_rows(self):
@@ -193,7 +193,7 @@ class Refusals(Sweep):
             "3: a is judged by position and by energy": [*good, a_cell("a", "1", judge="energy")],
         }
         for words, rows in broken.items():
-            write_table(self.folder / "fastest.csv", FASTEST, rows)
+            write_table(self.folder / "fastest.csv", rows, FASTEST)
             self.assertEqual(self.refusal(), f"fastest.csv, line {words}.")
         cells = ("nodes", "1e-4", 100, 1000, "", "a", "b", "verlet", "rk4")
         change = dict(zip(CROSSOVERS, cells))

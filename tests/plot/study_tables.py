@@ -12,8 +12,10 @@ from programs import run
 EXPERIMENTS = Path(__file__).resolve().parents[2] / "experiments"
 
 
-def write_table(path, columns, rows):
-    """Writes dicts as a CSV file; numbers to their last bit, without columns that are not named."""
+def write_table(path, rows, columns=None):
+    """Writes dicts as a CSV file with these columns alone, or all of the first row; numbers to
+    their last bit."""
+    columns = columns or list(rows[0])
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n", extrasaction="ignore")
         writer.writeheader()

@@ -1,7 +1,5 @@
 """Pages of made folders, through the real packer, in Chromium without a screen."""
 
-import contextlib
-import io
 import json
 import tempfile
 import unittest
@@ -14,7 +12,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
 import made_folder
-import report
+from packed_folder import pack
 
 # Waits are for conditions; this is only how long a test may hang on a busy machine.
 PATIENCE = 120
@@ -128,9 +126,7 @@ class Page(unittest.TestCase):
         folder = cls.home / name
         made_folder.make_folder(folder, **{"side": 5, "frames": 8, "runs": 5, **options})
         change(folder)
-        with contextlib.redirect_stderr(io.StringIO()) as said:
-            status = report.main([str(folder)])
-        assert status == 0, said.getvalue()
+        assert pack(folder) == (0, "")
         return folder / "report.html"
 
     def load(self, path, fragment=""):

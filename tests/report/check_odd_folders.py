@@ -15,7 +15,7 @@ import made_folder
 import made_sweeps
 import page
 import report
-from packed_folder import Folder, Page, elements
+from packed_folder import Folder, Page, elements, pack
 
 HOSTILE = (
     "</script><script>alert(1)</script>",
@@ -69,11 +69,6 @@ class Points(Folder):
         super().setUp()
         made_folder.make_folder(self.folder, has_motions=False)
 
-    def of(self, rows):
-        """The page's data with these points."""
-        self.rewrite("points.csv", rows)
-        return self.page().data
-
     def test_the_points_alone_make_a_page(self):
         for name in ("front.csv", "front.json", "points.json", "reference.json"):
             (self.folder / name).unlink()
@@ -91,13 +86,13 @@ class Points(Folder):
         rows = self.rows()
         good = [row for row in rows if row["outcome"] == "reached_end"]
         self.edit("points.json", lambda content: content.update(interrupted="SIGINT"))
-        data = self.of([row for row in rows if row not in good])
+        data = self.data_of([row for row in rows if row not in good])
         self.assertEqual({answer["why"] for answer in data["answers"]}, {"no method reached it"})
         self.assertIn("No run gave a point.", data["notes"])
         self.assertRegex(data["notes"][0], "interrupted by SIGINT")
         # Infinite and missing numbers are null.
         good[0] |= {"energy_growth": "inf", "setup_s": "nan", "steps": ""}
-        data = self.of(good[:1])
+        data = self.data_of(good[:1])
         for name in ("energy_growth", "setup_s", "steps"):
             self.assertIsNone(data["points"][name][0])
         self.assertEqual(len(data["methods"]), 1)
@@ -127,11 +122,11 @@ class Points(Folder):
         text = (self.folder / "points.csv").read_text()
         for broken in (text.replace("0.02,", "tiny,", 1), "a,b\n1,2\n", "\x00\xff"):
             (self.folder / "points.csv").write_text(broken, encoding="latin-1")
-            status, said = self.call()
+            status, said = pack(self.folder)
             self.assertEqual(status, 2)
             self.assertRegex(said, r"^.*points\.csv.*\.\n$")
         (self.folder / "points.csv").unlink()
-        self.assertEqual(self.call()[0], 2)
+        self.assertEqual(pack(self.folder)[0], 2)
         self.assertFalse((self.folder / "report.html").exists())
         for arguments in ([], ["a", "b"], ["--help"]):
             with mock.patch("sys.stderr"):
@@ -140,7 +135,7 @@ class Points(Folder):
     def test_the_page_appears_whole_or_not_at_all(self):
         before, path = self.page().text, self.folder / "report.html"
         with mock.patch("os.replace", side_effect=OSError(28, "No space left on device")):
-            status, said = self.call()
+            status, said = pack(self.folder)
         self.assertEqual((status, said.count("\n")), (2, 1))
         self.assertIn("No space left", said)
         self.assertEqual(Page(path).text, before)

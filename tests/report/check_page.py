@@ -5,8 +5,8 @@ from selenium.webdriver.common.keys import Keys
 
 from browser import Page
 from check_page_motion import Moving  # They run with the tests of this file.
-from packed_folder import edit_json, rewrite
-from study_tables import judge, read_table
+from packed_folder import edit_json
+from study_tables import judge, read_table, write_table
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&lt;"
 CHART = "document.getElementById('chart-drawing')"
@@ -182,7 +182,7 @@ class Odd(Page):
         def spoil(folder):
             failed = {"outcome": "diverged", "error_position": "", "time_s": ""}
             rows = [row | failed for row in read_table(folder / "points.csv")]
-            rewrite(folder / "points.csv", rows)
+            write_table(folder / "points.csv", rows)
             for name in ("front.csv", "front.json", "motions.csv"):
                 (folder / name).unlink()
             judge(folder)
@@ -206,7 +206,7 @@ class Odd(Page):
             for row in rows:
                 row["scene"] = HOSTILE
                 row["method"] = HOSTILE if row["method"] == first else row["method"]
-            rewrite(folder / "points.csv", rows)
+            write_table(folder / "points.csv", rows)
             edit_json(folder / "points.json", spoil_sidecar)
             edit_json(folder / "chart.json", lambda content: content.update(scene=HOSTILE))
 

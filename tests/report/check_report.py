@@ -73,8 +73,8 @@ class Contents(Folder):
         rows = self.rows()
         # So many slow methods before the others that some stay pale and take the last colours.
         slow = [row for row in rows if row["method"] == "explicit_euler"]
-        self.rewrite("points.csv", [row | {"method": m} for m in SLOW for row in slow] + rows)
-        methods = self.page().data["methods"]
+        slow = [row | {"method": method} for method in SLOW for row in slow]
+        methods = self.data_of(slow + rows)["methods"]
         self.assertEqual({method["strong"] for method in methods}, {True, False})
         looks = emphasis.Prominent([read_record(self.folder).judged]).looks
         self.assertEqual(
@@ -227,8 +227,7 @@ class BeyondTheHorizon(Folder):
             row |= {"error_position": 9, "error_position_at_least": 9, "error_position_at_most": 9}
         for row, error in zip(rows, (1e-5, 4, "")):
             row |= {"error_energy_max": error, "error_modal_shares": 0.01}
-        self.rewrite("points.csv", rows)
-        data = self.page().data
+        data = self.data_of(rows)
         self.assertEqual(data["judged_by"], "energy")
         self.assertEqual(data["quantities"][0]["column"], "error_energy_max")
         self.assertRegex(data["notes"][0], "^Chaotic: from t = 0.3 s on.*")
@@ -239,16 +238,14 @@ class BeyondTheHorizon(Folder):
         self.assertNotIn("No run gave a point.", data["notes"])
         for row in rows:
             row |= {"error_position": 1e-3, "error_energy_max": 4}
-        self.rewrite("points.csv", rows)
-        self.assertIn("No run gave a point.", self.page().data["notes"])
+        self.assertIn("No run gave a point.", self.data_of(rows)["notes"])
 
     def test_another_motion_is_no_answer(self):
         rows = self.rows()
         for row in rows:
             # Chance makes 0.01; ten times as far is another motion.
             row["error_modal_shares"] = 0.11 if row["method"] == "symmetric8" else 0.09
-        self.rewrite("points.csv", rows)
-        data = self.page().data
+        data = self.data_of(rows)
         names = [data["methods"][index]["name"] for index in data["points"]["method"]]
         fastest = {names[answer["point"]] for answer in data["answers"] if answer["point"]}
         self.assertTrue(fastest)

@@ -12,8 +12,9 @@ import made_sweeps
 from study_tables import write_table
 
 OF_THE_POINT = "method knob value outcome t_reached".split()
-MOTION_COLUMNS = [*"file role frames largest_distance why".split(), *OF_THE_POINT]
 ENERGY_COLUMNS = "file t kinetic potential total".split()
+# The least error of a run's nodes at its end, as a part of the scene's size.
+NOISE = 1e-3
 
 
 class Sheet:
@@ -91,7 +92,7 @@ def energies(name, times, error):
     ]
 
 
-def write_motions(folder, sheet, rows, frames, runs, noise):
+def write_motions(folder, sheet, rows, frames, runs):
     """Writes the reference's motion and those of some points; the runs, most telling first."""
     (folder / "motions").mkdir(exist_ok=True)
     generator = np.random.default_rng(7)
@@ -112,7 +113,7 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
         diverges = row["outcome"] == "diverged"
         positions, distance, largest = reference, None, ""
         if number:
-            error = size * max(noise, row["error_position"] or 0)
+            error = size * max(NOISE, row["error_position"] or 0)
             positions = spoiled(reference, times, error, generator, diverges)
             distance = np.linalg.norm(positions - reference, axis=-1)
             largest = float(distance.max() / displacement) if displacement else ""
@@ -122,9 +123,9 @@ def write_motions(folder, sheet, rows, frames, runs, noise):
             | {"file": name, "role": "run" if number else "reference", "frames": len(times)}
             | {"largest_distance": largest, "why": "fastest at 1e-2" if number else ""}
         )
-        energy += energies(name, times, 0.3 * noise * number)
-    write_table(folder / "motions.csv", MOTION_COLUMNS, table)
-    write_table(folder / "motions_energy.csv", ENERGY_COLUMNS, energy)
+        energy += energies(name, times, 0.3 * NOISE * number)
+    write_table(folder / "motions.csv", table)
+    write_table(folder / "motions_energy.csv", energy)
     origin = {"interrupted": None, "exit_status": 0, "version": "0.1.0"}
     origin |= {"until": made_sweeps.UNTIL, "displacement": displacement, "runs_left_out": 0}
     (folder / "motions.json").write_text(json.dumps(origin))
@@ -145,15 +146,14 @@ def displacement_of(sheet):
 
 
 def make_folder(
-    folder, scene="made", side=12, frames=40, runs=6, noise=1e-3, dimension=3, has_faces=True,
-    has_springs=True, has_motions=True,
+    folder, scene="made", side=12, frames=40, runs=6, dimension=3, has_faces=True, has_springs=True,
+    has_motions=True,
 ):  # fmt: skip
-    """Writes all files into the folder, which may be new; `noise`: the least error of a run's
-    nodes at its end, as a part of the scene's size."""
+    """Writes all files into the folder, which may be new."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     sheet = Sheet(side, dimension, has_faces, has_springs)
     counts = (len(sheet.rest), len(sheet.springs))
     rows = made_sweeps.write_study(folder, scene, dimension, *counts, displacement_of(sheet))
     if has_motions:
-        write_motions(folder, sheet, rows, frames, runs, noise)
+        write_motions(folder, sheet, rows, frames, runs)

@@ -14,7 +14,6 @@ COLUMNS = (
     "error_energy_max,error_momentum_max,error_modal_shares,error_position_at_least,"
     "error_position_at_most,energy_growth,stock_of"
 ).split(",")
-FRONT_COLUMNS = "scene,accuracy,method,value,stability_margin".split(",")
 
 
 @dataclass(frozen=True)
@@ -143,8 +142,8 @@ def write_study(folder, scene, dimension, nodes, springs, displacement):
         for method in METHODS
         for value in (TOLERANCES if method.knob == "rtol" else STEP_SIZES)
     ]
-    write_table(folder / "points.csv", COLUMNS, rows)
-    write_table(folder / "front.csv", FRONT_COLUMNS, front(scene))
+    write_table(folder / "points.csv", rows)
+    write_table(folder / "front.csv", front(scene))
     about = json.dumps(sidecar(scene, dimension, nodes, springs))
     (folder / "points.json").write_text(about)
     (folder / "front.json").write_text(about)

@@ -82,16 +82,18 @@ class Page:
         return values.reshape(len(run["times"]), -1)
 
 
+def pack(folder):
+    """The packer's exit status and what it says on stderr."""
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        status = report.main([str(folder)])
+    return status, said.getvalue()
+
+
 def edit_json(path, change):
     """Changes a JSON file's content."""
     content = json.loads(path.read_text())
     change(content)
     path.write_text(json.dumps(content))
-
-
-def rewrite(path, rows):
-    """Writes a table anew."""
-    write_table(path, list(rows[0]), rows)
 
 
 class Folder(unittest.TestCase):
@@ -105,20 +107,19 @@ class Folder(unittest.TestCase):
         made_folder.make_folder(self.folder, **options)
         return self.page()
 
-    def call(self):
-        """The packer's exit status and what it says on stderr."""
-        with contextlib.redirect_stderr(io.StringIO()) as said:
-            status = report.main([str(self.folder)])
-        return status, said.getvalue()
-
     def page(self):
         """The page of the folder as it is now, its record made anew."""
         judge(self.folder)
         return self.packed()
 
+    def data_of(self, rows):
+        """The data of the page with these points."""
+        self.rewrite("points.csv", rows)
+        return self.page().data
+
     def packed(self):
         """The page of the folder with the record that it has."""
-        self.assertEqual(self.call(), (0, ""))
+        self.assertEqual(pack(self.folder), (0, ""))
         return Page(self.folder / "report.html")
 
     def edit(self, name, change):
@@ -131,4 +132,4 @@ class Folder(unittest.TestCase):
 
     def rewrite(self, name, rows):
         """Writes a table anew."""
-        rewrite(self.folder / name, rows)
+        write_table(self.folder / name, rows)
