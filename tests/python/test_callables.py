@@ -17,8 +17,8 @@ class Callables(unittest.TestCase):
 
         def force(q, f):
             for name, a in (("q", q), ("f", f)):
-                flags = a.flags
-                seen.add((name, a.shape, a.dtype, flags.c_contiguous, flags.writeable, flags.owndata))
+                is_so = a.flags.c_contiguous, a.flags.writeable, a.flags.owndata
+                seen.add((name, a.shape, a.dtype, *is_so))
             return np.negative(q, out=f)  # as functions of NumPy do
 
         system = qddot.System(np.ones(4), force, dimension=3)
