@@ -5,6 +5,7 @@ import functools
 import os
 import resource
 import subprocess
+from pathlib import Path
 
 from random_scenes import spoiled
 from studies import COMMANDS, SCENES, write_scenes
@@ -55,12 +56,8 @@ def again(dice, program, options, sandbox):
         before = ["prlimit", f"--as={size}", "--"]
     elif dice.random() < 0.8:
         folder = os.path.join(sandbox.here, "results")
-        path = os.path.join(folder, dice.choice(sorted(os.listdir(folder))))
-        if os.path.isfile(path):
-            with open(path, "r+b") as file:
-                data = spoiled(dice, file.read())
-                file.seek(0)
-                file.truncate()
-                file.write(data)
+        path = Path(folder, dice.choice(sorted(os.listdir(folder))))
+        if path.is_file():
+            path.write_bytes(spoiled(dice, path.read_bytes()))
     sandbox.notice()
     return COMMANDS[os.path.basename(program)].split() + more, before, scarce

@@ -6,6 +6,7 @@ import random
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 from limited_run import run
 from written_tables import is_time, rows_of
@@ -30,9 +31,8 @@ class Sweep:
     def __init__(self, programs, place):
         self.program, self.folder = os.path.join(programs, "sweep"), os.path.join(place, "S")
         os.makedirs(place)
-        study = os.path.join(place, "study.toml")
-        with open(study, "w", encoding="utf-8") as file:
-            file.write(STUDY)
+        study = Path(place, "study.toml")
+        study.write_text(STUDY, encoding="utf-8")
         self.start("plan", study, "--out", self.folder).wait()
 
     def start(self, *words):
@@ -54,11 +54,8 @@ class Sweep:
 
     def whole_tasks(self):
         """The files of tasks that are complete, and what they hold."""
-        found = {}
-        for path in glob.glob(os.path.join(self.folder, "tasks", "whole", "*")):
-            with open(path, "rb") as file:
-                found[path] = file.read()
-        return found
+        paths = glob.glob(os.path.join(self.folder, "tasks", "whole", "*"))
+        return {path: Path(path).read_bytes() for path in paths}
 
 
 def disturb(dice, processes, folder):
@@ -74,9 +71,8 @@ def disturb(dice, processes, folder):
                 os.truncate(path, dice.randrange(os.path.getsize(path) + 1))
         elif alive and what < 0.4:
             pid = dice.choice(alive).pid
-            with open(f"/proc/{pid}/task/{pid}/children", encoding="utf-8") as file:
-                for child in file.read().split():
-                    os.kill(int(child), signal.SIGKILL)
+            for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
+                os.kill(int(child), signal.SIGKILL)
         elif alive:
             dice.choice(alive).send_signal(
                 dice.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT])

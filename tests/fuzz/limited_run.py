@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass
@@ -38,13 +39,10 @@ def limit_this_process(memory=None, file_size=None):
 
 def become_nobody(reachable):
     """Gives up root's rights, where this process has them and `reachable` can be read without."""
-    if os.getuid() != 0:
+    path = Path(os.path.abspath(reachable))
+    is_readable = all(place.stat().st_mode & 0o005 == 0o005 for place in [path, *path.parents])
+    if os.getuid() != 0 or not is_readable:
         return
-    path = os.path.abspath(reachable)
-    while path != "/":
-        if not os.stat(path).st_mode & 0o005 == 0o005:
-            return
-        path = os.path.dirname(path)
     os.setgroups([])
     os.setgid(65534)
     os.setuid(65534)

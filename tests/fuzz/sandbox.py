@@ -4,6 +4,7 @@ to them."""
 import os
 import shutil
 import stat
+from pathlib import Path
 
 OWN = {
     "end.json": b'{"mine": true}\n',
@@ -44,8 +45,7 @@ class Sandbox:
         for folder in ("home", "here/mine", "here/folder", "here/sub", "here/locked"):
             os.makedirs(os.path.join(root, folder))
         for name, data in (OWN | files | {"$x.toml": files.get("scene.toml", b"")}).items():
-            with open(os.path.join(self.here, name), "wb") as file:
-                file.write(data)
+            Path(self.here, name).write_bytes(data)
         for name, target in LINKS.items():
             os.symlink(target, os.path.join(self.here, name))
         os.mkfifo(os.path.join(self.here, "fifo"))
@@ -68,8 +68,7 @@ class Sandbox:
                 path = os.path.join(folder, name)
                 mode = os.lstat(path).st_mode
                 if stat.S_ISREG(mode) and mode & 0o400:
-                    with open(path, "rb") as file:
-                        content = file.read()
+                    content = Path(path).read_bytes()
                 else:
                     content = os.readlink(path) if stat.S_ISLNK(mode) else stat.S_IFMT(mode)
                 state[os.path.relpath(path, self.root)] = content

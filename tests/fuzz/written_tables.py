@@ -5,6 +5,7 @@ import io
 import json
 import os
 import re
+from pathlib import Path
 
 NOT_FINITE = {"nan", "-nan", "+nan", "inf", "-inf", "+inf", "infinity", "-infinity"}
 # Measured times (and memory) and what is computed from them: columns, and tables of who was the
@@ -24,8 +25,7 @@ def is_time(column):
 
 def rows_of(path):
     """The rows of an RFC 4180 table; raises ValueError with what is wrong."""
-    with open(path, "rb") as file:
-        text = file.read().decode()
+    text = Path(path).read_bytes().decode()
     if not text.endswith("\n"):
         raise ValueError("its last line does not end")
     try:
@@ -49,8 +49,7 @@ def _refuse(word):
 
 def json_of(path):
     """What a JSON file holds; raises ValueError with what is wrong."""
-    with open(path, "rb") as file:
-        return json.loads(file.read().decode(), parse_constant=_refuse)
+    return json.loads(Path(path).read_bytes().decode(), parse_constant=_refuse)
 
 
 def faults(folder, names):

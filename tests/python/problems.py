@@ -1,5 +1,6 @@
 """Problems that the tests of the module share."""
 
+import ctypes
 import os
 import subprocess
 import tempfile
@@ -7,7 +8,7 @@ import tempfile
 import numpy as np
 
 import qddot
-from programs import table
+from programs import table, write
 
 
 def read_table(path):
@@ -39,7 +40,7 @@ def random_scene(seed, dimension=3):
 
 def duffing_force(q, f):
     """f of V = q^2/2 + q^4/4, for each unknown by itself."""
-    np.copyto(f, -q - q**3)
+    np.copyto(f, -q - q * q * q)
 
 
 def duffing_potential(q):
@@ -94,10 +95,9 @@ class Chain:
     def scene(self):
         """The same as a scene."""
         q, v = self.start()
-        ends = [[0.0, 0.0]], [[self.nodes + 1.0, 0.0]]
         return qddot.Scene(
-            positions=np.concatenate((ends[0], q, ends[1])),
-            velocities=np.concatenate(([[0.0, 0.0]], v, [[0.0, 0.0]])),
+            positions=np.concatenate(([[0.0, 0.0]], q, [[self.nodes + 1.0, 0.0]])),
+            velocities=np.pad(v, ((1, 1), (0, 0))),
             springs=[(i, i + 1) for i in range(self.nodes + 1)],
             stiffness=self.k,
             mass=1.0,
@@ -112,16 +112,10 @@ class Chain:
 
 def compiled(source):
     """A C library of that source, loaded by ctypes; it stays as long as the process."""
-    import ctypes
-
     folder = tempfile.mkdtemp()
-    path = os.path.join(folder, "library.c")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(source)
-    made = os.path.join(folder, "library.so")
-    subprocess.run(
-        [os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", path, "-o", made], check=True
-    )
+    path, made = write(f"{folder}/library.c", source), f"{folder}/library.so"
+    words = [os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", path, "-o", made]
+    subprocess.run(words, check=True)
     return ctypes.CDLL(made)
 
 

@@ -13,23 +13,18 @@ import qddot
 
 class Callables(unittest.TestCase):
     def test_calls_see_the_solvers_memory(self):
-        seen = {}
+        seen = set()
 
         def force(q, f):
-            seen.update(
-                shape=(q.shape, f.shape), order=(q.flags.c_contiguous, f.flags.c_contiguous),
-                write=(q.flags.writeable, f.flags.writeable), own=(q.flags.owndata, f.flags.owndata),
-                kind=(q.dtype, f.dtype),
-            )  # fmt: skip
+            for name, a in (("q", q), ("f", f)):
+                is_so = a.flags.c_contiguous, a.flags.writeable, a.flags.owndata
+                seen.add((name, a.shape, a.dtype, *is_so))
             return np.negative(q, out=f)  # as functions of NumPy do
 
         system = qddot.System(np.ones(4), force, dimension=3)
         solution = qddot.solve(system, "verlet", step_size=0.1, until=1, q0=np.ones((4, 3)))
-        self.assertEqual(seen["shape"], ((4, 3), (4, 3)))
-        self.assertEqual(seen["order"], (True, True))
-        self.assertEqual(seen["write"], (False, True))
-        self.assertEqual(seen["own"], (False, False))
-        self.assertEqual(seen["kind"], (np.float64, np.float64))
+        kind = (4, 3), np.dtype(float), True
+        self.assertEqual(seen, {("q", *kind, False, False), ("f", *kind, True, False)})
         self.assertEqual(solution.q.shape, (1, 4, 3))
 
     def test_results_are_views_into_one_buffer(self):
@@ -107,16 +102,13 @@ class Callables(unittest.TestCase):
     def test_what_is_kept_is_refused(self):
         kept = []
 
-        def keeps_q(q, f):
-            kept.append(q)
-            f[:] = -q
-
-        def keeps_part(q, f):
-            kept.append(f[:1])
-            f[:] = -q
-
-        for force, name in ((keeps_q, "q"), (keeps_part, "f")):
+        for name, part in {"q": lambda q, f: q, "f": lambda q, f: f[:1]}.items():
             with self.subTest(name):
+
+                def force(q, f):
+                    kept.append(part(q, f))
+                    f[:] = -q
+
                 system = qddot.System(np.ones(2), force, check=False)
                 sentence = rf"force: it kept {name} .*{name}\.copy\(\)"
                 with self.assertRaisesRegex(RuntimeError, sentence):

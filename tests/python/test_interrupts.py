@@ -4,7 +4,6 @@ import pickle
 import signal
 import subprocess
 import sys
-import textwrap
 import threading
 import time
 import unittest
@@ -31,28 +30,31 @@ ENDLESS = {
 }
 
 
+# How all scripts begin.
+BEGIN = """
+import os, signal, threading, time
+import numpy as np
+import qddot
+cloth = qddot.scenes.cloth(nodes=10)
+system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
+handler_before = signal.getsignal(signal.SIGINT)
+"""
+
+
 def script(endless, before=""):
-    return textwrap.dedent("""
-        import signal, sys
-        import numpy as np
-        import qddot
-        cloth = qddot.scenes.cloth(nodes=10)
-        system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
-        {before}
-        print("ready", flush=True)
-        try:
-            answer = {endless}
-            print("ended", answer.outcome)
-        except KeyboardInterrupt:
-            print("interrupted")
-        # All goes on as if nothing had been.
-        again = qddot.solve(cloth, "verlet", step_size=1e-3, until=0.05)
-        assert again.outcome == "reached_end", again.outcome
-        assert qddot.reference(cloth, 0.05).certified.position < 1e-6
-        assert signal.getsignal(signal.SIGINT) is handler_before
-        """).format(
-        endless=endless, before=before or "handler_before = signal.getsignal(signal.SIGINT)"
-    )
+    return f"""{BEGIN}{before}
+print("ready", flush=True)
+try:
+    answer = {endless}
+    print("ended", answer.outcome)
+except KeyboardInterrupt:
+    print("interrupted")
+# All goes on as if nothing had been.
+again = qddot.solve(cloth, "verlet", step_size=1e-3, until=0.05)
+assert again.outcome == "reached_end", again.outcome
+assert qddot.reference(cloth, 0.05).certified.position < 1e-6
+assert signal.getsignal(signal.SIGINT) is handler_before
+"""
 
 
 def interrupted(text):
@@ -85,7 +87,6 @@ def handler_before(*_):
 {ours}
 """
         within = """
-handler_before = signal.getsignal(signal.SIGINT)
 def force(q, f):
     qddot.solve(cloth, "verlet", step_size=1e-7, until=1e3)
 system = qddot.System([1.0], force, check=False)
@@ -178,33 +179,26 @@ class Threads(unittest.TestCase):
 
 
 def said_by(code):
-    """What a process prints that runs the code and ends well."""
-    words = [sys.executable, "-c", code]
+    """What a process prints that runs the code after BEGIN and ends well."""
+    words = [sys.executable, "-c", BEGIN + code]
     done = subprocess.run(words, capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     return done.stdout
 
 
-def end_of(scene):
-    return qddot.solve(scene, "verlet", step_size=1e-3, until=0.1)
-
-
-def failing(scene):
-    qddot.solve(scene, "verlet", step_size=1.0, until=1e3).or_raise()
+def end_of(scene, step_size=1e-3, until=0.1):
+    return qddot.solve(scene, "verlet", step_size=step_size, until=until).or_raise()
 
 
 class Processes(unittest.TestCase):
     def test_failures_come_from_other_processes(self):
         with get_context("fork").Pool(1) as pool:
             with self.assertRaises(qddot.RunFailed) as raised:
-                pool.map(failing, [qddot.scenes.oscillator()])
+                pool.apply(end_of, (qddot.scenes.oscillator(), 1.0, 1e3))
         self.assertEqual(raised.exception.solution.outcome, "diverged")
 
     def test_control_c_in_a_process_that_was_forked_within_a_run(self):
         code = """
-import os, signal
-import numpy as np
-import qddot
 def force(q, f):
     f[:] = -q
     if os.fork() == 0:
@@ -222,16 +216,11 @@ qddot.solve(qddot.System([1.0], force, check=False), "verlet", step_size=1.0, un
 
     def test_the_interpreter_exits_while_threads_solve(self):
         for run in (
-            "qddot.solve(cloth, 'verlet', step_size=1e-7, until=1e3)",
-            "qddot.solve(system, 'verlet', step_size=1e-6, until=1e3, q0=[1.0])",
+            ENDLESS["run"],
+            ENDLESS["callable"],
             "[qddot.solve(cloth, 'verlet', step_size=1e-3, until=0.01) for _ in range(10**6)]",
         ):
             code = f"""
-import threading, time
-import numpy as np
-import qddot
-cloth = qddot.scenes.cloth(nodes=5)
-system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
 threading.Thread(target=lambda: {run}, daemon=True).start()
 time.sleep(0.3)
 print("exits")

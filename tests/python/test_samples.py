@@ -1,19 +1,17 @@
 """The code that pages and the notebook show does what it says."""
 
 import contextlib
-import csv
 import io
 import json
 import os
 import re
 import subprocess
 import sys
-import tempfile
-import unittest
 import warnings
 from pathlib import Path
 
 import qddot
+from programs import Programs, table
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -23,12 +21,9 @@ def blocks_of(page):
     return re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
 
 
-class Samples(unittest.TestCase):
+class Samples(Programs):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
+        super().setUp()
         qddot.scenes.cloth(nodes=5).save("cloth.toml")
         os.environ["MPLBACKEND"] = "Agg"
 
@@ -65,23 +60,21 @@ class Samples(unittest.TestCase):
                 self.assertNotEqual(output["output_type"], "error")
 
 
-class BesideSciPy(unittest.TestCase):
+class BesideSciPy(Programs):
     def test_a_small_study_is_measured_and_drawn(self):
         study = ROOT / "experiments/beside_scipy"
-        with tempfile.TemporaryDirectory() as folder:
-            words = f"--problems planet --point-limit 0.01 --repeats 1 --out {folder}".split()
-            command = [sys.executable, "-B", study / "measure.py", *words]
-            done = subprocess.run(command, capture_output=True, text=True)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            with open(os.path.join(folder, "runs.csv"), encoding="utf-8", newline="") as file:
-                runs = list(csv.DictReader(file))
-            ways = {(run["force"], run["way"]) for run in runs}
-            self.assertLessEqual({("own f", "solve_ivp"), ("own f", "qddot")}, ways)
-            self.assertTrue(all(0 < float(run["error_position"]) <= 3 for run in runs))
-            done = subprocess.run(
-                [sys.executable, "-B", study / "beside_scipy.py", folder],
-                env={**os.environ, "PYTHONPATH": str(ROOT / "experiments/plot")},
-                capture_output=True, text=True,
-            )  # fmt: skip
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertGreater(os.path.getsize(os.path.join(folder, "beside_scipy.png")), 10_000)
+        words = "--problems planet --point-limit 0.01 --repeats 1 --out .".split()
+        command = [sys.executable, "-B", study / "measure.py", *words]
+        done = subprocess.run(command, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        runs = table("runs.csv")
+        ways = {(run["force"], run["way"]) for run in runs}
+        self.assertLessEqual({("own f", "solve_ivp"), ("own f", "qddot")}, ways)
+        self.assertTrue(all(0 < run["error_position"] <= 3 for run in runs))
+        done = subprocess.run(
+            [sys.executable, "-B", study / "beside_scipy.py", "."],
+            env={**os.environ, "PYTHONPATH": str(ROOT / "experiments/plot")},
+            capture_output=True, text=True,
+        )  # fmt: skip
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(os.path.getsize("beside_scipy.png"), 10_000)

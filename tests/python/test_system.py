@@ -1,5 +1,6 @@
 """An own M q'' = f(q): by callables and by C functions, with and without V and K."""
 
+import ctypes
 import unittest
 
 import numpy as np
@@ -36,7 +37,6 @@ class OwnForces(unittest.TestCase):
 
     def test_c_functions_are_the_callables(self):
         import cffi
-        import ctypes
 
         library = problems.compiled(problems.DUFFING_C)
         library.potential.restype = ctypes.c_double
@@ -54,30 +54,24 @@ class OwnForces(unittest.TestCase):
         except ImportError:
             pass
         else:
-            number, whole = numba.types.float64, numba.types.int64
-            pointer = numba.types.CPointer(number)
 
+            @numba.cfunc("void(CPointer(float64), CPointer(float64), int64)")
             def force(q, f, n):
                 for i in range(n):
                     f[i] = -q[i] - q[i] * q[i] * q[i]
 
+            @numba.cfunc("float64(CPointer(float64), int64)")
             def potential(q, n):
                 v = 0.0
                 for i in range(n):
                     v += q[i] * q[i] / 2 + q[i] * q[i] * q[i] * q[i] / 4
                 return v
 
-            cases["numba"] = (
-                numba.cfunc(numba.types.void(pointer, pointer, whole))(force),
-                numba.cfunc(number(pointer, whole))(potential),
-            )
-
-        def plain(q, f):
-            f[:] = -q - q * q * q
+            cases["numba"] = force, potential
 
         q0, ones = np.array([1.0, -0.5, 0.25]), np.ones(3)
         run = dict(rtol=1e-9, q0=q0, until=20.0)
-        duffing = qddot.System(ones, plain, problems.duffing_potential)
+        duffing = qddot.System(ones, problems.duffing_force, problems.duffing_potential)
         expected = qddot.solve(duffing, "dprkn8", **run)
         # q'^2/2 + V(q) all the way.
         energy = problems.duffing_potential(q0)

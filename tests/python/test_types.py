@@ -4,10 +4,10 @@ import importlib.util
 import os
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import qddot
+from programs import Programs, write
 
 PACKAGE = os.path.dirname(qddot.__file__)
 # Members that pybind11 gives every class; the module's typed interface cannot name them.
@@ -32,35 +32,25 @@ MISUSE = USER + "solution.energie\n"
 
 
 @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
-class Types(unittest.TestCase):
-    def run_in_package(self, *words):
-        with tempfile.TemporaryDirectory() as cache:
-            command, place = [sys.executable, "-m", *words], os.path.dirname(PACKAGE)
-            environment = {**os.environ, "MYPY_CACHE_DIR": cache}
-            return subprocess.run(
-                command, cwd=place, env=environment, capture_output=True, text=True
-            )
+class Types(Programs):
+    def ends(self, status, *words):
+        command, place = [sys.executable, "-m", *words], os.path.dirname(PACKAGE)
+        environment = {**os.environ, "MYPY_CACHE_DIR": os.path.abspath("cache")}
+        done = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
 
     def test_the_stub_is_the_extensions(self):
-        with tempfile.NamedTemporaryFile("w", suffix=".txt") as allowed:
-            allowed.write(ALLOWED)
-            allowed.flush()
-            words = f"mypy.stubtest qddot._qddot --ignore-unused-allowlist --allowlist {allowed.name}"
-            done = self.run_in_package(*words.split())
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        allowed = os.path.abspath(write("allowed.txt", ALLOWED))
+        words = f"mypy.stubtest qddot._qddot --ignore-unused-allowlist --allowlist {allowed}"
+        self.ends(0, *words.split())
 
     def test_the_layer_holds_its_types(self):
         files = [name for name in os.listdir(PACKAGE) if name.endswith(".py")]
-        done = self.run_in_package("mypy", "--strict", *(os.path.join("qddot", f) for f in files))
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.ends(0, "mypy", "--strict", *(os.path.join("qddot", f) for f in files))
 
     def test_users_are_told_by_their_checker(self):
         for text, status in ((USER, 0), (MISUSE, 1)):
-            with tempfile.NamedTemporaryFile("w", suffix=".py") as user:
-                user.write(text)
-                user.flush()
-                done = self.run_in_package("mypy", "--strict", user.name)
-                self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+            self.ends(status, "mypy", "--strict", os.path.abspath(write("user.py", text)))
 
 
 class Names(unittest.TestCase):
