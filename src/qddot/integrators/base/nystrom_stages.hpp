@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "qddot/model/vector_updates.hpp"
@@ -20,7 +21,10 @@ struct NystromPair {
   std::vector<double> b{}, b_prime{}, lower_b{}, lower_b_prime{};
 
   // Whether the last stage is the first one of the next step: q_s = q_{n+1}.
-  bool is_first_same_as_last() const;
+  bool is_first_same_as_last() const {
+    return c.back() == 1 && std::equal(a.back().begin(), a.back().end(), b.begin()) &&
+           b.back() == 0;
+  }
 };
 
 // The accelerations k_1 ... k_s of one step of a pair for n unknowns; s - 1 of them are computed.
