@@ -46,7 +46,7 @@ bool is_any_of(const std::exception& error) {
 
 int status_of(const std::exception& error) {
   if (is_any_of<InvalidInput, kernels::NoSuchKernels>(error)) return bad_input;
-  // What is asked for does not exist for the scene, or numbers of the scene overflow on the way.
+  // The scene does not have the quantity that is asked for, or its numbers overflow on the way.
   if (is_any_of<CannotWrite, NoReference, std::domain_error, std::range_error>(error))
     return end_not_reached;
   return failed;

@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(of_a_linear_chain_they_are_those_of_the_start) {
     BOOST_TEST(std::abs(mean[j] - start[j] / start.sum()) < 3e-3);
   }
   BOOST_TEST(std::abs(start[3] / start[0] - 4.0 / 9) < 1e-10);
-  // What is above those that are kept apart.
+  // The share of modes above those that are kept apart.
   BOOST_TEST(std::abs(start[ModalShares::most_modes] / start[0] - 1.0 / 9) < 1e-10);
 }
 

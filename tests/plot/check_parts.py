@@ -125,7 +125,7 @@ class Prominent(unittest.TestCase):
         # The best of SUNDIALS comes before what solves linear systems in either family.
         expected = ["coarse", "fine", "erk", "bdf_klu", "solving", "bdf"]
         self.assertEqual(self.strong(runs), expected)
-        # What stands out has full colour, and the rest is pale.
+        # Lines that stand out have full colour, and the rest is pale.
         view = a_view(runs)
         chosen = emphasis.Prominent([view])
         strokes = {s[0].method: chosen.stroke(view, s) for s in record.sweeps(runs)}

@@ -124,7 +124,7 @@ OF_OWN_RUNS = {
     r"pattern: entry \(9, 0\)": dict(changes=dict(pattern=[[9, 0]])),
     "implicit_euler needs K: .*pattern": dict(method="implicit_euler"),
     "discrete_gradient needs the discrete gradient": dict(method="discrete_gradient"),
-    # What callables return.
+    # Results of callables.
     "force: it returned something": dict(changes=dict(force=lambda q, f: -q)),
     "is it written": dict(changes=dict(force=lambda q, f: f.fill(np.nan))),
     "f is -dV/dq": dict(changes=dict(potential=lambda q: -problems.duffing_potential(q))),

@@ -69,7 +69,7 @@ class Budget(unittest.TestCase):
         self.assertEqual([run.run for run in both], list(range(len(both))))
         self.assertTrue(1 < len(both) < 20)
         self.assertEqual(both[0].frames[-1], 59)
-        # What runs take beside their frames costs no frames, as energies, which a run has at all.
+        # The energies of runs lie beside their frames and cost no frames.
         runs = budget.fit([101] * 30, 30 * (20_000 + 101 * 100), of_size(100, 20_000))
         self.assertEqual([len(run.frames) for run in runs], [101] * 30)
         self.assertIsNone(budget.fit([60] * 20, 199, of_size(100)))

@@ -18,7 +18,7 @@ namespace qddot::reduce {
 class Reduced {
  public:
   Reduced(const Scene& scene, const Reductions& reductions);
-  // Of a caller's own system: it has no part, and its nodes are its unknowns.
+  // A caller's own system: it has no part, and its nodes are its unknowns.
   Reduced(std::shared_ptr<const System> system, State initial, int dimension);
 
   const System& system() const { return *system_; }
