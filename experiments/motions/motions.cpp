@@ -114,7 +114,10 @@ int main(int argc, char** argv) {
       progress().stage("making the reference's motion");
       const auto moves = reference_motion(times, subject.reduced, reference, study.points,
                                           study.options, longest_reference);
-      if (moves) kept.add_reference(*moves);
+      if (moves) {
+        kept.add_reference(*moves);
+        origin["reference_error"] = moves->error;
+      }
       keep(runs, most.is_given(), study.options, reference, kept);
     } catch (const Interrupted&) {
       why = interrupted();

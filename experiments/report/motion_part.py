@@ -151,6 +151,8 @@ def pack(study, origin, opened, energies, notes, room):
         "low": encoder.low.tolist(),
         "size": encoder.size,
         "distance_unit": encoder.unit,
+        # The relative distance below which the reference itself may be off.
+        "known_to": origin.get("reference_error"),
         # Missing motions are named beside the others.
         "notes": notes + what_was_left_out(opened, entries),
         "runs": entries,

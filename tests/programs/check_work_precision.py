@@ -343,7 +343,8 @@ class Motions(Programs):
         self.assertEqual(len(runs), len(outcomes) - outcomes.count("over_budget"))
         origin = sidecar("reference.json")
         # Rounding, or what the reference is certified to: runs come as near at the best.
-        error = float(reference["why"].removeprefix("within ").split()[0])
+        error = sidecar("motions.json")["reference_error"]
+        self.assertIn(f"within {error:.1e} of the reference", reference["why"])
         self.assertLessEqual(error, 10 * origin["certified_position"])
         energies = {}
         for row in table("motions_energy.csv"):

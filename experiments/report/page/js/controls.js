@@ -116,10 +116,10 @@ export const scale = byId("scale");
 const [sentence, now, bar, , pale] = scale.children;
 bar.style.background = `linear-gradient(to right, ${STOPS.join(", ")})`;
 
-/** Makes distances pale below `known`, the least that means something; none where it is null. */
+/** Makes distances pale below `known`, the least that means something; none if it is null or 0. */
 export function markUnknown(known) {
   const unknown = bar.firstElementChild;
-  unknown.hidden = pale.hidden = known === null;
+  unknown.hidden = pale.hidden = !(known > 0);
   unknown.style.width = percent(Math.log10(known));
   pale.textContent = `Pale: below ${words.about(known)} the reference itself may be off.`;
 }

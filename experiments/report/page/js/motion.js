@@ -124,13 +124,6 @@ function viewOf(run) {
   );
 }
 
-// The least relative distance that the reference's own error lets mean something, where what is
-// said of the reference tells it; else null.
-function knownTo() {
-  const found = /\bwithin (\d[\d.]*e-?\d+)\b/.exec(reference?.why ?? "");
-  return found ? Number(found[1]) : null;
-}
-
 // The ways to move the view, and the meaning of the drawing.
 function explanation(lift) {
   const move =
@@ -249,7 +242,7 @@ export async function drawMotion() {
   const bounds = boundsOf(frames[0]);
   const lift = liftOf(bounds);
   const hasDistances = frames.some((run) => run.distances);
-  markUnknown(knownTo());
+  markUnknown(motion.known_to);
   const parts = frames.map((run, at) => ({ run, body: bodies[at], view: views[at] }));
   scene = { parts, lift, bounds, table: colorTable() };
   const until = Math.max(...frames.map((run) => run.times.at(-1)));
