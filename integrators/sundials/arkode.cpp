@@ -116,28 +116,13 @@ std::string Arkode::flag_name(int flag) const {
 }
 
 Cause cause_of_arkode(int flag) {
-  switch (flag) {
-    case ARK_ERR_FAILURE:
-      return Cause::error_test;
-    case ARK_TOO_MUCH_ACC:
-      return Cause::accuracy;
-    case ARK_TOO_CLOSE:
-      return Cause::end_too_close;
-    case ARK_CONV_FAILURE:
-      return Cause::convergence;
-    case ARK_LSETUP_FAIL:
-      return Cause::setup;
-    case ARK_FIRST_RHSFUNC_ERR:
-      return Cause::first_force;
-    case ARK_RHSFUNC_FAIL:
-    case ARK_REPTD_RHSFUNC_ERR:
-    case ARK_UNREC_RHSFUNC_ERR:
-      return Cause::force;
-    case ARK_INNERSTEP_FAIL:
-      return Cause::fast_steps;
-    default:
-      return Cause::other;
-  }
+  static constexpr std::pair<int, Cause> causes[] = {
+      {ARK_ERR_FAILURE, Cause::error_test},  {ARK_TOO_MUCH_ACC, Cause::accuracy},
+      {ARK_TOO_CLOSE, Cause::end_too_close}, {ARK_CONV_FAILURE, Cause::convergence},
+      {ARK_LSETUP_FAIL, Cause::setup},       {ARK_FIRST_RHSFUNC_ERR, Cause::first_force},
+      {ARK_RHSFUNC_FAIL, Cause::force},      {ARK_REPTD_RHSFUNC_ERR, Cause::force},
+      {ARK_UNREC_RHSFUNC_ERR, Cause::force}, {ARK_INNERSTEP_FAIL, Cause::fast_steps}};
+  return cause_in(causes, flag);
 }
 
 }  // namespace qddot::sundials

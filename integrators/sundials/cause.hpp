@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <utility>
+
 #include "qddot/integrators/integrator.hpp"
 
 namespace qddot::sundials {
@@ -23,5 +26,8 @@ Outcome outcome_of(Cause cause);
 // The event as the beginning of a sentence, and the remedy as its end.
 const char* what_happened(Cause cause);
 const char* what_to_turn(Cause cause, bool has_fixed_step);
+
+// The cause of a library's flag in the table of its flags; `other` if the flag is not in it.
+Cause cause_in(std::span<const std::pair<int, Cause>> table, int flag);
 
 }  // namespace qddot::sundials

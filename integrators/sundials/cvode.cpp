@@ -86,26 +86,13 @@ class Cvode : public Stepper {
   }
 
   Cause cause_of(int flag) const override {
-    switch (flag) {
-      case CV_ERR_FAILURE:
-        return Cause::error_test;
-      case CV_TOO_MUCH_ACC:
-        return Cause::accuracy;
-      case CV_TOO_CLOSE:
-        return Cause::end_too_close;
-      case CV_CONV_FAILURE:
-        return Cause::convergence;
-      case CV_LSETUP_FAIL:
-        return Cause::setup;
-      case CV_FIRST_RHSFUNC_ERR:
-        return Cause::first_force;
-      case CV_RHSFUNC_FAIL:
-      case CV_REPTD_RHSFUNC_ERR:
-      case CV_UNREC_RHSFUNC_ERR:
-        return Cause::force;
-      default:
-        return Cause::other;
-    }
+    static constexpr std::pair<int, Cause> causes[] = {
+        {CV_ERR_FAILURE, Cause::error_test},  {CV_TOO_MUCH_ACC, Cause::accuracy},
+        {CV_TOO_CLOSE, Cause::end_too_close}, {CV_CONV_FAILURE, Cause::convergence},
+        {CV_LSETUP_FAIL, Cause::setup},       {CV_FIRST_RHSFUNC_ERR, Cause::first_force},
+        {CV_RHSFUNC_FAIL, Cause::force},      {CV_REPTD_RHSFUNC_ERR, Cause::force},
+        {CV_UNREC_RHSFUNC_ERR, Cause::force}};
+    return cause_in(causes, flag);
   }
 
   std::string flag_name(int flag) const override {

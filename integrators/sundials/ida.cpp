@@ -297,26 +297,13 @@ class Ida final : public Stepper {
     const bool is_about_a_step = flag == IDA_ERR_FAIL || flag == IDA_CONV_FAIL ||
                                  flag == IDA_NLS_FAIL || flag == IDA_LSETUP_FAIL;
     if (is_about_a_step && massless_ && is_loose()) return Cause::loose_massless;
-    switch (flag) {
-      case IDA_ERR_FAIL:
-        return Cause::error_test;
-      case IDA_TOO_MUCH_ACC:
-        return Cause::accuracy;
-      case IDA_CONV_FAIL:
-      case IDA_NLS_FAIL:
-        return Cause::convergence;
-      case IDA_LSETUP_FAIL:
-        return Cause::setup;
-      case IDA_FIRST_RES_FAIL:
-        return Cause::first_force;
-      case IDA_RES_FAIL:
-      case IDA_REP_RES_ERR:
-        return Cause::force;
-      case IDA_ILL_INPUT:  // the only cause of this flag that runs meet
-        return Cause::end_too_close;
-      default:
-        return Cause::other;
-    }
+    static constexpr std::pair<int, Cause> causes[] = {
+        {IDA_ERR_FAIL, Cause::error_test},    {IDA_TOO_MUCH_ACC, Cause::accuracy},
+        {IDA_CONV_FAIL, Cause::convergence},  {IDA_NLS_FAIL, Cause::convergence},
+        {IDA_LSETUP_FAIL, Cause::setup},      {IDA_FIRST_RES_FAIL, Cause::first_force},
+        {IDA_RES_FAIL, Cause::force},         {IDA_REP_RES_ERR, Cause::force},
+        {IDA_ILL_INPUT, Cause::end_too_close}};  // the only cause of this flag that runs meet
+    return cause_in(causes, flag);
   }
 
   std::string flag_name(int flag) const override {

@@ -25,15 +25,8 @@ struct Equilibrium {
 
 // The name in tables: "reached", "unbounded", "not_converged".
 constexpr const char* name(Equilibrium::Outcome outcome) {
-  switch (outcome) {
-    case Equilibrium::Outcome::reached:
-      return "reached";
-    case Equilibrium::Outcome::unbounded:
-      return "unbounded";
-    case Equilibrium::Outcome::not_converged:
-      break;
-  }
-  return "not_converged";
+  constexpr const char* names[] = {"reached", "unbounded", "not_converged"};
+  return names[static_cast<int>(outcome)];
 }
 
 // Finds a stable equilibrium f(q) = 0: a minimum of V, downhill from `start` (n). `length` [m] > 0

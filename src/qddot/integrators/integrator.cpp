@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <new>
 #include <stdexcept>
 
@@ -25,6 +26,48 @@ constexpr double balance_tolerance = 1e-6;
 // more.
 constexpr double solve_tolerance = 1e-4;
 
+// The names of outcomes and the advice on them, in the order of Outcome.
+struct OutcomeWords {
+  std::string_view name, advice;
+};
+constexpr OutcomeWords outcomes[] = {
+    {"reached_end", ""},
+    {"diverged", "the motion grew without bound: take a smaller step or an implicit method"},
+    {"newton_failed", "the nonlinear solve of a step did not converge: take a smaller step"},
+    {"indefinite_matrix",
+     "M - h^2 K is not positive definite, as compressed springs make it: take a smaller step or an "
+     "explicit method"},
+    {"step_too_small",
+     "the step is too small for the time to advance: take a larger step or tolerance, or an "
+     "earlier end"},
+    {"singular_mass",
+     "a massless node has no acceleration: give it a mass or take a method that accepts massless "
+     "nodes"},
+    {"not_finite",
+     "a force or velocity is not a finite number: take a smaller step, or look for extreme values "
+     "in the scene"},
+    {"solver_failed", "the solver gave up"},
+    {"over_budget", "the run was stopped because its time was up"},
+    {"stiffness_varies",
+     "K changes with the positions, and this method is for constant K: take another one"},
+    {"went_slack",
+     "springs at a massless node came under compression, where they fold up in no time: give the "
+     "node a mass; or on a scene of one dimension, where nothing folds up, keep it (--no-reduce "
+     "massless) and take a method that accepts massless nodes"},
+    {"no_stiff_set",
+     "the scene names no stiff springs, whose forces this method takes apart: give it stiff_above, "
+     "or take another method"},
+    {"no_laplacian",
+     "the system has no matrix that stands for its stiffness everywhere, as springs have: take "
+     "another method"},
+    {"no_stiffness",
+     "the system computes no stiffness matrix K, which this method needs: give it "
+     "stiffness_pattern() and stiffness(), or take an explicit method"},
+    {"no_discrete_gradient",
+     "the system computes no discrete gradient of its energy, which this method needs: take "
+     "another method"}};
+static_assert(std::size(outcomes) == static_cast<std::size_t>(Outcome::no_discrete_gradient) + 1);
+
 // Throws std::invalid_argument unless a run with these arguments is allowed. Numbers that are not
 // finite make the run fail instead.
 void check_arguments(const System& system, const State& state, double t_end,
@@ -32,9 +75,8 @@ void check_arguments(const System& system, const State& state, double t_end,
   const auto check_size = [&](const char* which, const Vec& x) {
     if (x.size() == system.size()) return;
     throw std::invalid_argument(
-        fmt::format("advance: {} has {} entries, and the system has {} "
-                    "unknowns",
-                    which, x.size(), system.size()));
+        fmt::format("advance: {} has {} entries, and the system has {} unknowns", which, x.size(),
+                    system.size()));
   };
   check_size("q", state.q);
   check_size("v", state.v);
@@ -60,88 +102,9 @@ void check_arguments(const System& system, const State& state, double t_end,
 
 }  // namespace
 
-std::string_view name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::reached_end:
-      return "reached_end";
-    case Outcome::diverged:
-      return "diverged";
-    case Outcome::newton_failed:
-      return "newton_failed";
-    case Outcome::indefinite_matrix:
-      return "indefinite_matrix";
-    case Outcome::step_too_small:
-      return "step_too_small";
-    case Outcome::singular_mass:
-      return "singular_mass";
-    case Outcome::not_finite:
-      return "not_finite";
-    case Outcome::solver_failed:
-      return "solver_failed";
-    case Outcome::over_budget:
-      return "over_budget";
-    case Outcome::stiffness_varies:
-      return "stiffness_varies";
-    case Outcome::went_slack:
-      return "went_slack";
-    case Outcome::no_stiff_set:
-      return "no_stiff_set";
-    case Outcome::no_laplacian:
-      return "no_laplacian";
-    case Outcome::no_stiffness:
-      return "no_stiffness";
-    case Outcome::no_discrete_gradient:
-      return "no_discrete_gradient";
-  }
-  return "unknown";
-}
-
+std::string_view name(Outcome outcome) { return outcomes[static_cast<std::size_t>(outcome)].name; }
 std::string_view advice(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::reached_end:
-      return "";
-    case Outcome::diverged:
-      return "the motion grew without bound: take a smaller step or an implicit method";
-    case Outcome::newton_failed:
-      return "the nonlinear solve of a step did not converge: take a smaller step";
-    case Outcome::indefinite_matrix:
-      return "M - h^2 K is not positive definite, as compressed springs make it: take a smaller "
-             "step or an explicit method";
-    case Outcome::step_too_small:
-      return "the step is too small for the time to advance: take a larger step or tolerance, or "
-             "an "
-             "earlier end";
-    case Outcome::singular_mass:
-      return "a massless node has no acceleration: give it a mass or take a method that accepts "
-             "massless nodes";
-    case Outcome::not_finite:
-      return "a force or velocity is not a finite number: take a smaller step, or look for extreme "
-             "values in the scene";
-    case Outcome::solver_failed:
-      return "the solver gave up";
-    case Outcome::over_budget:
-      return "the run was stopped because its time was up";
-    case Outcome::stiffness_varies:
-      return "K changes with the positions, and this method is for constant K: take another one";
-    case Outcome::went_slack:
-      return "springs at a massless node came under compression, where they fold up in no time: "
-             "give the node a mass; or on a scene of one dimension, where nothing folds up, keep "
-             "it "
-             "(--no-reduce massless) and take a method that accepts massless nodes";
-    case Outcome::no_stiff_set:
-      return "the scene names no stiff springs, whose forces this method takes apart: give it "
-             "stiff_above, or take another method";
-    case Outcome::no_laplacian:
-      return "the system has no matrix that stands for its stiffness everywhere, as springs have: "
-             "take another method";
-    case Outcome::no_stiffness:
-      return "the system computes no stiffness matrix K, which this method needs: give it "
-             "stiffness_pattern() and stiffness(), or take an explicit method";
-    case Outcome::no_discrete_gradient:
-      return "the system computes no discrete gradient of its energy, which this method needs: "
-             "take another method";
-  }
-  return "";
+  return outcomes[static_cast<std::size_t>(outcome)].advice;
 }
 
 Counts& Counts::operator+=(const Counts& more) {

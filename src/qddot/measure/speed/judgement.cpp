@@ -9,33 +9,16 @@ namespace {
 
 double measured(const Point& point, Quantity quantity) {
   if (point.outcome != Outcome::reached_end) return std::numeric_limits<double>::quiet_NaN();
-  switch (quantity) {
-    case Quantity::position:
-      return point.errors.position;
-    case Quantity::energy:
-      return point.path.energy;
-    case Quantity::momentum:
-      return point.path.momentum;
-    case Quantity::modes:
-      return point.path.modal_shares;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
+  const double errors[] = {point.errors.position, point.path.energy, point.path.momentum,
+                           point.path.modal_shares};
+  return errors[static_cast<int>(quantity)];
 }
 
 }  // namespace
 
 const char* name(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::position:
-      return "position";
-    case Quantity::energy:
-      return "energy";
-    case Quantity::momentum:
-      return "momentum";
-    case Quantity::modes:
-      return "modes";
-  }
-  return "";
+  constexpr const char* names[] = {"position", "energy", "momentum", "modes"};
+  return names[static_cast<int>(quantity)];
 }
 
 Known known(double error, double certified) {
