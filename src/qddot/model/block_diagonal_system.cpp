@@ -43,7 +43,7 @@ bool any_offers(const std::vector<std::unique_ptr<System>>& blocks) {
 }  // namespace
 
 BlockDiagonalSystem::BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks)
-    : System(all_masses(blocks)), blocks_(std::move(blocks)) {
+    : CapableSystem(all_masses(blocks)), blocks_(std::move(blocks)) {
   const auto has_stiffness = [](const auto& block) { return block->has_stiffness(); };
   if (!std::ranges::all_of(blocks_, has_stiffness)) return;
   pattern_.resize(size(), size());

@@ -83,6 +83,31 @@ class Validity {
   }
 };
 
+// Lengths at whose changes of sign the force jumps. Example: a spring of rest length l0 > 0 on a
+// line reverses its force k l0 when its length passes through zero. A system without this has a
+// continuous force.
+class Kinks {
+ public:
+  virtual ~Kinks() = default;
+  // The number of such lengths.
+  virtual Index kinks() const = 0;
+  // Writes these signed lengths [m] at q (n) into `lengths`, sized by the caller. They are affine
+  // in q.
+  virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
+};
+
+// A system that implements all capabilities above; offers() says which of them it has.
+class CapableSystem : public System,
+                      public SplitStiffness,
+                      public DiscreteGradient,
+                      public Laplacian,
+                      public PiecewiseLinear,
+                      public Validity,
+                      public Kinks {
+ public:
+  using System::System;
+};
+
 // A system made of systems that no force couples.
 class Blocks {
  public:
@@ -123,18 +148,5 @@ inline const Split* split_of(const System& system) {
   const auto* forces = capability<SplitForces>(system);
   return forces ? &forces->split() : nullptr;
 }
-
-// A capability (see capabilities.hpp): the force jumps where certain lengths change sign, and the
-// system gives these lengths. Example: a spring of rest length l0 > 0 on a line reverses its force
-// k l0 when its length passes through zero. A system without this has a continuous force.
-class Kinks {
- public:
-  virtual ~Kinks() = default;
-  // The number of such lengths.
-  virtual Index kinks() const = 0;
-  // Writes these signed lengths [m] at q (n) into `lengths`, sized by the caller. They are affine
-  // in q.
-  virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
-};
 
 }  // namespace qddot
