@@ -1,4 +1,4 @@
-#include <chrono>
+#include <limits>
 
 #include "experiments/record/chart_record.hpp"
 #include "python/extension/bindings.hpp"
@@ -168,37 +168,6 @@ py::dict energy_trend_of(const Model& model, const std::string& name, const py::
       arg("verdict") = verdict_name(verdict_at(run, until)), arg("words") = verdict(run, until));
 }
 
-}  // namespace
-
-py::dict record_of(const Errors& errors) {
-  return py::dict(arg("position") = errors.position, arg("velocity") = errors.velocity,
-                  arg("energy") = errors.energy);
-}
-
-py::dict record_of(const Point& p) {
-  const bool is = p.outcome == Outcome::reached_end;
-  const auto measured = [is](double x) {
-    return is ? x : std::numeric_limits<double>::quiet_NaN();
-  };
-  py::dict record(arg("method") = p.method->name, arg("knob") = knob_name(p.method->knob),
-                  arg("value") = p.value, arg("outcome") = std::string(name(p.outcome)),
-                  arg("t_reached") = p.t_reached,
-                  arg("error_position") = measured(p.errors.position),
-                  arg("error_velocity") = measured(p.errors.velocity),
-                  arg("error_energy") = measured(p.errors.energy), arg("time_s") = measured(p.time),
-                  arg("time_min_s") = measured(p.time_min), arg("setup_s") = measured(p.setup),
-                  arg("order_mean") = order_mean(p.counts), arg("timed_runs") = p.timed_runs,
-                  arg("family") = family_name(p.method->family), arg("order") = p.method->order,
-                  arg("error_energy_max") = measured(p.path.energy),
-                  arg("error_momentum_max") = measured(p.path.momentum),
-                  arg("error_modal_shares") = measured(p.path.modal_shares),
-                  arg("energy_growth") = p.energy_growth, arg("stock_of") = p.method->stock_of);
-  record.attr("update")(record_of(p.counts));
-  return record;
-}
-
-namespace {
-
 py::array_t<double> energies_of(const EnergyCourse& course) {
   const auto times = static_cast<py::ssize_t>(course.times.size());
   const Index springs = course.energies.empty() ? 0 : course.energies.front().size();
@@ -274,6 +243,33 @@ py::dict exchange(const Model& model, const Names& names, const std::vector<doub
 }
 
 }  // namespace
+
+py::dict record_of(const Errors& errors) {
+  return py::dict(arg("position") = errors.position, arg("velocity") = errors.velocity,
+                  arg("energy") = errors.energy);
+}
+
+py::dict record_of(const Point& p) {
+  const bool is = p.outcome == Outcome::reached_end;
+  const auto measured = [is](double x) {
+    return is ? x : std::numeric_limits<double>::quiet_NaN();
+  };
+  py::dict record(arg("method") = p.method->name, arg("knob") = knob_name(p.method->knob),
+                  arg("value") = p.value, arg("outcome") = std::string(name(p.outcome)),
+                  arg("t_reached") = p.t_reached,
+                  arg("error_position") = measured(p.errors.position),
+                  arg("error_velocity") = measured(p.errors.velocity),
+                  arg("error_energy") = measured(p.errors.energy), arg("time_s") = measured(p.time),
+                  arg("time_min_s") = measured(p.time_min), arg("setup_s") = measured(p.setup),
+                  arg("order_mean") = order_mean(p.counts), arg("timed_runs") = p.timed_runs,
+                  arg("family") = family_name(p.method->family), arg("order") = p.method->order,
+                  arg("error_energy_max") = measured(p.path.energy),
+                  arg("error_momentum_max") = measured(p.path.momentum),
+                  arg("error_modal_shares") = measured(p.path.modal_shares),
+                  arg("energy_growth") = p.energy_growth, arg("stock_of") = p.method->stock_of);
+  record.attr("update")(record_of(p.counts));
+  return record;
+}
 
 void add_measures(py::module_& module) {
   py::class_<HeldReference> reference(module, "Reference");

@@ -89,76 +89,6 @@ py::list generator_records() {
   return all;
 }
 
-}  // namespace
-
-void add_scenes(py::module_& module) {
-  using Shared = std::shared_ptr<Scene>;
-  const auto shared = [](Scene scene) { return std::make_shared<Scene>(std::move(scene)); };
-  py::class_<Scene, Shared> scene(module, "Scene");
-  scene.def_static("load", [=](const std::string& name) { return shared(load_scene(name)); });
-  scene.def_static(
-      "parse", [=](const std::string& text, const std::string& name, const std::string& folder) {
-        return shared(parse_scene(text, name, folder));
-      });
-  scene.def_static("generate", [=](const std::string& name, const GeneratorValues& values) {
-    return shared(generate(generator_named(name), values, name));
-  });
-  scene.def_static("from_arrays",
-                   [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
-                       const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                       const Given& velocities, const Given& rest_length, const Given& quartic,
-                       const std::string& name, std::optional<double> until,
-                       std::optional<double> stiff_above, bool starts_at_equilibrium) {
-                     Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
-                                             velocities, rest_length, quartic);
-                     made.name = name;
-                     made.until = until;
-                     made.stiff_above = stiff_above;
-                     made.starts_at_equilibrium = starts_at_equilibrium;
-                     validate(made, name);
-                     return shared(std::move(made));
-                   });
-  // The scene as its motion starts: with its nodes at equilibrium if it starts there.
-  scene.def("started", [=](const Shared& self) {
-    return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;
-  });
-  scene.def("to_toml", [](const Scene& self) { return to_toml(self); });
-  scene.def("content_hash", [](const Scene& self) { return content_hash(self); });
-  scene.def_readonly("name", &Scene::name);
-  scene.def_readonly("dimension", &Scene::dimension);
-  scene.def_readonly("until", &Scene::until);
-  scene.def_readonly("stiff_above", &Scene::stiff_above);
-  scene.def_readonly("starts_at_equilibrium", &Scene::starts_at_equilibrium);
-  scene.def_readonly("warnings", &Scene::warnings);
-  const auto has = [&](const char* name, const auto& get) {
-    scene.def_property_readonly(name, get);
-  };
-  const auto of_nodes = [=](const char* name, Eigen::Vector3d Node::*which) {
-    has(name, [which](const Scene& s) { return array_of(s.nodes, which, s.dimension); });
-  };
-  of_nodes("positions", &Node::position);
-  of_nodes("velocities", &Node::velocity);
-  has("gravity", [](const Scene& s) { return array_of(Vec(s.gravity.head(s.dimension))); });
-  has("mass", [](const Scene& s) {
-    return column<double>(s.nodes, [](const Node& node) { return node.mass; });
-  });
-  has("pinned", [](const Scene& s) {
-    return column<bool>(s.nodes, [](const Node& node) { return node.pinned; });
-  });
-  has("springs", &ends_of);
-  const auto of_springs = [=](const char* name, double SpringLaw::*which) {
-    has(name, [which](const Scene& s) {
-      return column<double>(s.springs, [which](const Spring& one) { return one.law.*which; });
-    });
-  };
-  of_springs("stiffness", &SpringLaw::stiffness);
-  of_springs("rest_length", &SpringLaw::rest_length);
-  of_springs("quartic", &SpringLaw::quartic);
-  module.def("generators", &generator_records);
-}
-
-namespace {
-
 Reductions reductions_without(const Names& kept) {
   Reductions reductions;
   for (const std::string& name : kept) {
@@ -269,6 +199,72 @@ py::dict explanation_of(const Model& model) {
 }
 
 }  // namespace
+
+void add_scenes(py::module_& module) {
+  using Shared = std::shared_ptr<Scene>;
+  const auto shared = [](Scene scene) { return std::make_shared<Scene>(std::move(scene)); };
+  py::class_<Scene, Shared> scene(module, "Scene");
+  scene.def_static("load", [=](const std::string& name) { return shared(load_scene(name)); });
+  scene.def_static(
+      "parse", [=](const std::string& text, const std::string& name, const std::string& folder) {
+        return shared(parse_scene(text, name, folder));
+      });
+  scene.def_static("generate", [=](const std::string& name, const GeneratorValues& values) {
+    return shared(generate(generator_named(name), values, name));
+  });
+  scene.def_static("from_arrays",
+                   [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
+                       const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+                       const Given& velocities, const Given& rest_length, const Given& quartic,
+                       const std::string& name, std::optional<double> until,
+                       std::optional<double> stiff_above, bool starts_at_equilibrium) {
+                     Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
+                                             velocities, rest_length, quartic);
+                     made.name = name;
+                     made.until = until;
+                     made.stiff_above = stiff_above;
+                     made.starts_at_equilibrium = starts_at_equilibrium;
+                     validate(made, name);
+                     return shared(std::move(made));
+                   });
+  // The scene as its motion starts: with its nodes at equilibrium if it starts there.
+  scene.def("started", [=](const Shared& self) {
+    return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;
+  });
+  scene.def("to_toml", [](const Scene& self) { return to_toml(self); });
+  scene.def("content_hash", [](const Scene& self) { return content_hash(self); });
+  scene.def_readonly("name", &Scene::name);
+  scene.def_readonly("dimension", &Scene::dimension);
+  scene.def_readonly("until", &Scene::until);
+  scene.def_readonly("stiff_above", &Scene::stiff_above);
+  scene.def_readonly("starts_at_equilibrium", &Scene::starts_at_equilibrium);
+  scene.def_readonly("warnings", &Scene::warnings);
+  const auto has = [&](const char* name, const auto& get) {
+    scene.def_property_readonly(name, get);
+  };
+  const auto of_nodes = [=](const char* name, Eigen::Vector3d Node::*which) {
+    has(name, [which](const Scene& s) { return array_of(s.nodes, which, s.dimension); });
+  };
+  of_nodes("positions", &Node::position);
+  of_nodes("velocities", &Node::velocity);
+  has("gravity", [](const Scene& s) { return array_of(Vec(s.gravity.head(s.dimension))); });
+  has("mass", [](const Scene& s) {
+    return column<double>(s.nodes, [](const Node& node) { return node.mass; });
+  });
+  has("pinned", [](const Scene& s) {
+    return column<bool>(s.nodes, [](const Node& node) { return node.pinned; });
+  });
+  has("springs", &ends_of);
+  const auto of_springs = [=](const char* name, double SpringLaw::*which) {
+    has(name, [which](const Scene& s) {
+      return column<double>(s.springs, [which](const Spring& one) { return one.law.*which; });
+    });
+  };
+  of_springs("stiffness", &SpringLaw::stiffness);
+  of_springs("rest_length", &SpringLaw::rest_length);
+  of_springs("quartic", &SpringLaw::quartic);
+  module.def("generators", &generator_records);
+}
 
 void add_models(py::module_& module) {
   py::class_<Model> model(module, "Model");

@@ -112,6 +112,14 @@ double over_pivots(const SymbolicFactorization& symbolic, const OfPivot& of_pivo
   return sum;
 }
 
+bool same_column(const SymmetricMatrix& a, int i, int j) {
+  const auto column = [&](int k) {
+    return std::span(a.innerIndexPtr() + a.outerIndexPtr()[k],
+                     a.innerIndexPtr() + a.outerIndexPtr()[k + 1]);
+  };
+  return std::ranges::equal(column(i), column(j));
+}
+
 }  // namespace
 
 double SymbolicFactorization::entries() const {
@@ -160,18 +168,6 @@ SymbolicFactorization analyse(const SymmetricMatrix& pattern) {
   }
   return result;
 }
-
-namespace {
-
-bool same_column(const SymmetricMatrix& a, int i, int j) {
-  const auto column = [&](int k) {
-    return std::span(a.innerIndexPtr() + a.outerIndexPtr()[k],
-                     a.innerIndexPtr() + a.outerIndexPtr()[k + 1]);
-  };
-  return std::ranges::equal(column(i), column(j));
-}
-
-}  // namespace
 
 std::vector<int> block_starts(const SymmetricMatrix& pattern) {
   const SymmetricMatrix whole = pattern.selfadjointView<Eigen::Lower>();

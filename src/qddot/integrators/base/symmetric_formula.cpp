@@ -22,6 +22,23 @@ std::vector<double> palindrome(const std::vector<std::int64_t>& half, std::int64
   return all;
 }
 
+// The roots of sum c_i T_i(x), T_i Chebyshev's polynomials, c.back() not zero: the values of the
+// matrix that multiplies by x in their basis (Good, Quarterly J. Mathematics 12 (1961) 61-68).
+std::vector<std::complex<double>> chebyshev_roots(const std::vector<double>& c) {
+  const Eigen::Index degree = std::ssize(c) - 1;
+  Eigen::MatrixXd colleague = Eigen::MatrixXd::Zero(degree, degree);
+  for (Eigen::Index i = 0; i < degree; ++i) {
+    if (i + 1 < degree) colleague(i, i + 1) = i == 0 ? 1 : 0.5;
+    if (i > 0) colleague(i, i - 1) = 0.5;
+  }
+  const double scale = (degree == 1 ? 1 : 0.5) / c.back();
+  for (Eigen::Index j = 0; j < degree; ++j) {
+    colleague(degree - 1, j) -= scale * c[static_cast<std::size_t>(j)];
+  }
+  const Eigen::VectorXcd values = general_values(colleague);
+  return {values.begin(), values.end()};
+}
+
 }  // namespace
 
 std::vector<double> SymmetricFormula::all_rho() const { return palindrome(rho, rho_denominator); }
@@ -120,27 +137,6 @@ std::vector<Complex> roots_of(const SymmetricFormula& formula, double h_omega) {
   std::ranges::stable_sort(roots, is_before);
   return roots;
 }
-
-namespace {
-
-// The roots of sum c_i T_i(x), T_i Chebyshev's polynomials, c.back() not zero: the values of the
-// matrix that multiplies by x in their basis (Good, Quarterly J. Mathematics 12 (1961) 61-68).
-std::vector<std::complex<double>> chebyshev_roots(const std::vector<double>& c) {
-  const Eigen::Index degree = std::ssize(c) - 1;
-  Eigen::MatrixXd colleague = Eigen::MatrixXd::Zero(degree, degree);
-  for (Eigen::Index i = 0; i < degree; ++i) {
-    if (i + 1 < degree) colleague(i, i + 1) = i == 0 ? 1 : 0.5;
-    if (i > 0) colleague(i, i - 1) = 0.5;
-  }
-  const double scale = (degree == 1 ? 1 : 0.5) / c.back();
-  for (Eigen::Index j = 0; j < degree; ++j) {
-    colleague(degree - 1, j) -= scale * c[static_cast<std::size_t>(j)];
-  }
-  const Eigen::VectorXcd values = general_values(colleague);
-  return {values.begin(), values.end()};
-}
-
-}  // namespace
 
 // Divided by z^d, the palindrome is p_d + sum 2 p_{d+i} T_i((z + 1/z)/2).
 std::vector<std::complex<double>> cosines_of_roots(const std::vector<double>& palindrome) {

@@ -78,6 +78,20 @@ double best_near(const Eigen::MatrixXd& means, const Eigen::MatrixXd& other, dou
   return best;
 }
 
+// Tolerances for the tempo, the misfit, the change of the sum over the run, and its level; a course
+// outside of them is wrong.
+constexpr double tempo_tolerance = 1.1, most_misfit = 0.1, most_change = 0.1, most_level = 2;
+// Exchanged parts of the sum: above the first there is an exchange, below the second none.
+constexpr double some_exchange = 0.1, no_exchange = 0.02;
+
+// The deviation of a tempo from 1: "14 % too slowly", "2.3 times too fast".
+std::string off_by(double tempo) {
+  const char* where = tempo > 1 ? "too fast" : "too slowly";
+  const double factor = std::max(tempo, 1 / tempo);
+  return factor < 2 ? fmt::format("{:.0f} % {}", 100 * std::abs(tempo - 1), where)
+                    : fmt::format("{:.1f} times {}", factor, where);
+}
+
 }  // namespace
 
 ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other, double window) {
@@ -98,24 +112,6 @@ ExchangeComparison compare(const EnergyCourse& course, const EnergyCourse& other
   result.exchanged = (means.colwise() - Vec(means.col(0))).cwiseAbs().maxCoeff();
   return result;
 }
-
-namespace {
-
-// Tolerances for the tempo, the misfit, the change of the sum over the run, and its level; a course
-// outside of them is wrong.
-constexpr double tempo_tolerance = 1.1, most_misfit = 0.1, most_change = 0.1, most_level = 2;
-// Exchanged parts of the sum: above the first there is an exchange, below the second none.
-constexpr double some_exchange = 0.1, no_exchange = 0.02;
-
-// The deviation of a tempo from 1: "14 % too slowly", "2.3 times too fast".
-std::string off_by(double tempo) {
-  const char* where = tempo > 1 ? "too fast" : "too slowly";
-  const double factor = std::max(tempo, 1 / tempo);
-  return factor < 2 ? fmt::format("{:.0f} % {}", 100 * std::abs(tempo - 1), where)
-                    : fmt::format("{:.1f} times {}", factor, where);
-}
-
-}  // namespace
 
 std::string verdict_on(const Summary& summary) {
   const bool blows_up =
