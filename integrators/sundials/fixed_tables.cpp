@@ -12,7 +12,6 @@
 //     | 1-g  g                      1 | w    w    g/2
 //                                     | w    w    g/2
 #include <cmath>
-#include <initializer_list>
 #include <vector>
 
 #include <fmt/format.h>

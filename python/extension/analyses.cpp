@@ -1,4 +1,3 @@
-#include <cmath>
 #include <pybind11/complex.h>
 
 #include "python/extension/bindings.hpp"

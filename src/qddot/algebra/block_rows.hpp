@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
+#include <array>
 #include <vector>
 
 #include "qddot/algebra/large_array.hpp"

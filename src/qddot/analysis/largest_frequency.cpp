@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 // The data that the kernels of fronts read and write: plain numbers and pointers only, as in
 // spring_kernels.hpp.
 namespace qddot::multifrontal {

@@ -1,6 +1,7 @@
 #include "qddot/integrators/base/adaptive_step.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -10,7 +11,7 @@
 namespace qddot {
 namespace {
 
-// The controller aims at this fraction of the step that would just be accepted, and changes a step
+// The controller aims at this fraction of the step that would just be accepted. It changes a step
 // by no more than these factors at once.
 constexpr double safety = 0.9, smallest_factor = 0.2, largest_factor = 5;
 // The exponents of the last error and of the one before it, times the order of the errors; smaller

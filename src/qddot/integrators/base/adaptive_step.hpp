@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <limits>
 
 #include "qddot/integrators/base/creep.hpp"

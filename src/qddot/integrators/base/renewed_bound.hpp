@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "qddot/analysis/largest_frequency.hpp"
 
