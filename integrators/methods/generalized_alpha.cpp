@@ -51,9 +51,9 @@ class GeneralizedAlpha : public ImplicitStep {
     last_h_ = other.last_h_;
   }
 
-  // The equation of motion holds between the steps, so that a_n is the acceleration at t_n +
-  // (alpha_m - alpha_f) h, to second order. A step h' after a step h needs the acceleration at t_n
-  // + (alpha_m - alpha_f) h'. It is taken on the line through the last two:
+  // The equation of motion holds between the steps, so that a_n is the acceleration at
+  // t_n + (alpha_m - alpha_f) h, to second order. A step h' after a step h needs the acceleration
+  // at t_n + (alpha_m - alpha_f) h'. It is taken on the line through the last two:
   //   a_n + (alpha_m - alpha_f) (h'/h - 1) (a_n - a_{n-1})
   // Without that, each change of h would leave an error of first order in it. Steps only become
   // shorter (the last one, and those to observed times between two), so that the line is not

@@ -44,7 +44,7 @@ class ControlC {
 
   bool is_watched_ = false;
   std::stop_source source_;
-  ControlC* outer_ = nullptr;  // may be nullptr
+  ControlC* outer_ = nullptr;  // the one that this one replaces
 };
 
 // Whether Python's own handler answers SIGINT, so that another handler can call it.

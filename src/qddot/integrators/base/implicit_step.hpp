@@ -15,8 +15,8 @@ namespace qddot {
 // stationary, and a minimum is sought (Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011,
 // section 4). The acceleration of the stage is (u - u*)/s: it costs no force.
 //
-// Newton's method uses the last factors of M - s K as long as it converges, and else a new K. If M
-// - s K is not positive definite, only a part of the compression is kept (see compression.hpp). So
+// Newton's method uses the last factors of M - s K as long as it converges, and else a new K. Only
+// a part of the compression is kept if M - s K is not positive definite (see compression.hpp). So
 // directions descend, and a step that does not decrease g is halved until it does. A system without
 // V has no g, and its steps are whole.
 class ImplicitStep : public FixedStep {

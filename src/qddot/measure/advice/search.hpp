@@ -33,8 +33,8 @@ struct Bound {
 //     the first error is expected to be far below the accuracy, a slightly finer run is enough.
 //     Every run corrects the forecast. If no bound is within the accuracy, step 2 follows again.
 // Some methods need not resolve stiff springs. One of them is tried first if stiff springs are
-// named, or if the first run would take a thousand times as long as a few implicit steps. It is
-// refined until its runs agree, for a small part of the first run's time; then it is given up.
+// named. So it is if the first run would take a thousand times as long as a few implicit steps. It
+// is refined until its runs agree, for a small part of the first run's time; then it is given up.
 // Verlet's method cannot step systems with massless nodes: IDA is refined there.
 class Search {
  public:

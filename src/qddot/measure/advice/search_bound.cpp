@@ -94,7 +94,7 @@ const Trial* Search::most_accurate(bool seen_on_its_way, double longest) const {
   return best;
 }
 
-// q - q*| <= |q - q_best| + |q_best - q*|: a bound for the most accurate run gives bounds for all
+// |q - q*| <= |q - q_best| + |q_best - q*|: a bound for the most accurate run gives bounds for all
 // others.
 std::optional<Bound> Search::bound(const Trial& trial) const {
   const std::optional<Bound> own = bound_by_order(trial);

@@ -34,12 +34,13 @@ struct Reference {
   double energy = 0;  // E(0) [J], which the exact motion keeps
   Scales scales;
   Errors certified;
-  // The effect of one rounding of the start on the positions at the end, as a position error, and
+  // The effect of one rounding of the start on the positions at the end, as a position error. Then
   // the factor by which it has grown. The rounding is a random displacement of up to 2^-52 of the
   // scene's extent. A motion is chaotic if the effect grows exponentially.
   double rounding_effect = 0, perturbation_growth = 0;
   // The time [s] from which the displaced motion and the reference are `apart`, extrapolated if it
-  // is after the end, and the rate [1/s] at which they part. Infinite and zero for regular motions.
+  // is after the end. Then the rate [1/s] at which they part. For regular motions they are infinite
+  // and zero.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
   // The effect of a push on a motion that was reduced by symmetry. Empty if it was not, or if
   // finding the effect took too long.
@@ -75,9 +76,9 @@ using Expect = std::function<void(double seconds)>;
 //   else:  Kahan and Li's composition (symplectic, fixed step)  -  Fehlberg's 7(8) pair of
 //          Boost.odeint (adaptive).
 // Each is refined until only rounding changes the result, or until time is up. `start` is the scene
-// that `scene` is the reduction of. If it is given and its dimension or a mirror was reduced, a run
-// of all drawn nodes measures the effect of a push, in up to `seconds` more. Throws NoReference if
-// either method never reaches the end.
+// that `scene` is the reduction of. If it is given, and its dimension or a mirror was reduced, the
+// effect of a push is measured: a run of all drawn nodes, in up to `seconds` more. Throws
+// NoReference if either method never reaches the end.
 Reference make_reference(const ReducedScene& scene, double until, double seconds,
                          const Scene* start = nullptr, const Expect& expect = {});
 

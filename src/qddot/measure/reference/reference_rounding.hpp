@@ -5,12 +5,12 @@
 namespace qddot::inline measure {
 
 // The start with each unknown changed at random. Positions change by up to `part` times the largest
-// coordinate or displacement of their part of the scene, velocities by up to `part` times its
-// speed. The machine's epsilon as `part` makes that one rounding.
+// coordinate or displacement of their part of the scene; velocities change by up to `part` times
+// its speed. The machine's epsilon as `part` makes that one rounding.
 State displaced_start(const ReducedScene& scene, const Scales& scales, double part);
 
-// Repeats a composition from a start that is one rounding away and to an end time one rounding
-// later, and measures the effect on the end.
+// Repeats a composition from a start that is one rounding away, to an end time one rounding later.
+// Measures the effect on the end.
 class RoundingRun {
  public:
   // Takes `seconds` at most; if they are not enough, reached_end() is false and there is no effect.
@@ -39,9 +39,9 @@ class RoundingRun {
   double growth_ = 0;
 };
 
-// Compares the composition's path, computed with the reductions of `scene`, with the motion of all
-// nodes of `start` after a push by one rounding in all dimensions. Empty if that takes longer than
-// `seconds`.
+// Compares the composition's path, computed with the reductions of `scene`, with a motion of all
+// nodes of `start`. That begins with a push by one rounding in all dimensions. Empty if it takes
+// longer than `seconds`.
 std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedScene& scene,
                                              const Solution& composed, double until,
                                              double seconds);

@@ -21,8 +21,8 @@ struct Solution {
 };
 
 // The motion from `initial` by a method with these options. Its scales are taken at the ends of
-// `samples` equal parts of the time, or at some of these if there are more than a million. About a
-// hundred of them make its path. Empty if it does not reach the end in `seconds`.
+// `samples` equal parts of the time; of more than a million, at some of these. About a hundred of
+// them make its path. Empty if it does not reach the end in `seconds`.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
                                  const Options& options, const State& initial, double until,
                                  std::int64_t samples, double seconds);
@@ -44,7 +44,7 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
 // truncation errors are left, each change is larger than the error after it, and the difference
 // contains the errors of both. If only rounding errors are left, all three are distances between
 // ends with independent errors of one size. The error of `one` exceeds twice each of them only if
-// all the others have nearly the same error in the same direction, within half of its size. The
+// all the others have nearly the same error: in its direction, within half of its size. The
 // rounding of the scene's own numbers is common to both; `rounding_effect` stands for it.
 Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
                  const Errors& rounding_effect = no_error);

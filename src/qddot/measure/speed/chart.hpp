@@ -1,16 +1,14 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "qddot/measure/speed/front.hpp"
 
 namespace qddot::inline measure {
 
-// Points that no other point beats in both time and error, from coarse to fine, as numbers of
-// points. Errors are those that are known to be reached; errors below the least one that means
-// anything count as that.
+// The points that no other point beats in both time and error, by their indices, from coarse to
+// fine. A point's error is its upper bound. Errors below the view's floor are not told apart.
 using Staircase = std::vector<std::size_t>;
 
 // The points of a chart over one kind of error.
@@ -54,6 +52,7 @@ struct Chart {
   }
 };
 
+// Judges the points against the reference. `accuracies`: of the front, from coarse to fine.
 Chart chart_of(const std::vector<Point>& points, const Reference& reference,
                const std::vector<double>& accuracies, StabilityMargins margins);
 

@@ -9,7 +9,7 @@ namespace qddot::inline measure {
 
 // Measures one method over the values of its knob, from coarse to fine.
 // The coarsest points fail or have an error as large as the motion. The finest point is the first
-// one for which one of these holds, where errors are judged_error() of judgement.hpp:
+// one for which one of these holds, where errors are those that decide accuracy (judgement.hpp):
 // - its error is at most the certified error of the reference,
 // - rounding keeps its error from falling,
 // - its run takes longer than the effort allows (its outcome is over_budget),

@@ -46,8 +46,8 @@ Verdict verdict_at(const DriftRun& run, double until);
 // The same in words. If the run ended early, it says when, and the energy's trend until then.
 std::string verdict(const DriftRun& run, double until);
 
-// Runs the method on the scene to the time `until` [s], for `seconds` of wall time at most, and
-// returns the trends of its energy and momenta. Samples are some thousands of multiples of
+// Runs the method on the scene to the time `until` [s], for `seconds` of wall time at most.
+// Returns the trends of its energy and momenta. Samples are some thousands of multiples of
 // options.step_size, also for adaptive methods, whose default is until/1e5. Throws as Simulation
 // does.
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,

@@ -32,7 +32,7 @@ struct VectorKernels {
                           double* d_next, double* q_next, std::ptrdiff_t n);
   // x_0^2 + x_1^2 + ...
   double (*squared_norm)(const double* x, std::ptrdiff_t n);
-  // v + c f/m|^2
+  // |v + c f/m|^2
   double (*squared_norm_of_kicked)(const double* v, double c, const double* f, const double* m,
                                    std::ptrdiff_t n);
   // The squared norm of x_i/(rtol |y_i| + atol).

@@ -27,8 +27,8 @@ struct Fall {
 };
 
 // Turns the part's velocities and gravity into those in the frame that falls with it, and stores
-// that in DrawnPart::fall. Does nothing if a node is pinned, if no node has mass, or if nothing
-// decides the motion of a node (no spring and no mass).
+// that in DrawnPart::fall. Does nothing if a node is pinned, if no node has mass, or if a node
+// has neither mass nor a spring.
 void let_fall(DrawnPart& drawn);
 
 // Whether the part does nothing as seen from that frame: all nodes are at rest and all springs at

@@ -29,7 +29,7 @@ struct Mirrors {
 };
 
 // Looks for such planes through the part's middle. A normal is an axis of `frame`, the diagonal of
-// two axes (which swaps the two coordinates), or a principal axis of the free nodes or of the pins.
+// two axes, or a principal axis of the free nodes or of the pins. A diagonal swaps two coordinates.
 // Everything has to agree within rounding (see drawn_part.hpp), and no spring with a rest length
 // may be as short as that. Takes n log n operations for n nodes and springs, of which few coincide.
 Mirrors mirrors_of(const DrawnPart& drawn, const Frame& frame);
