@@ -1,10 +1,9 @@
-#include <chrono>
-
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
 
 namespace qddot::python {
@@ -83,9 +82,9 @@ py::dict run(const Model& model, const std::string& name, const py::dict& given,
     simulation.emplace(model.reduced, method(name), options);
     std::optional<Deadline> deadline;
     if (most_seconds) deadline.emplace(*most_seconds);
-    const auto begin = std::chrono::steady_clock::now();
-    summary = simulation->advance(until, frames.observer(), deadline ? deadline->token() : stop);
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds = seconds_of([&] {
+      summary = simulation->advance(until, frames.observer(), deadline ? deadline->token() : stop);
+    });
   });
   return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
                   arg("seen") = frames.seen(),
