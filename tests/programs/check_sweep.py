@@ -5,6 +5,7 @@ import glob
 import itertools
 import json
 import os
+import re
 import shutil
 import signal
 import struct
@@ -234,18 +235,35 @@ class Tasks(Sweeps):
             "[options]\npoint-limit = 60\n"
         )
         self.done(REFERENCES)
-        process = started(POINTS)
 
-        def wait(is_running):
+        def wait(is_so):
             for _ in range(12000):
-                if ("1 running" in run("sweep status S").stdout) == is_running:
-                    return True
+                if is_so():
+                    return
                 time.sleep(0.01)
-            return False
+            self.fail("it was waited for two minutes")
 
-        self.assertTrue(wait(True))  # its runs take minutes
+        def is_running():
+            return "1 running" in run("sweep status S").stdout
+
+        def status(name):
+            return re.search(rf"{name}:\s*(\w+)", read(f"/proc/{child}/status"))[1]
+
+        process = started(POINTS)
+        wait(is_running)  # its runs take minutes
+        threads = glob.glob(f"/proc/{process.pid}/task/*/children")
+        (child,) = " ".join(map(read, threads)).split()
+        # While a process is stopped, signals that are sent to it wait.
+        os.kill(int(child), signal.SIGSTOP)
+        wait(lambda: status("State") == "T")
+        process.send_signal(signal.SIGTERM)
+        wait(lambda: int(status("ShdPnd"), 16) & 1 << signal.SIGTERM - 1)
+        os.kill(int(child), signal.SIGCONT)
+        self.complains(self.signalled(process, 0), 130, "interrupted by SIGTERM")
+        process = started(POINTS)
+        wait(is_running)
         self.signalled(process, signal.SIGKILL)
-        self.assertTrue(wait(False))
+        wait(lambda: not is_running())
 
     def test_points_of_a_task_that_was_killed_are_kept(self):
         self.sweep(measured="points")

@@ -11,9 +11,13 @@ import json
 import math
 import os
 import shlex
+import signal
 import subprocess
 import tempfile
 import unittest
+
+# Where a shell has started this aside, SIGINT is ignored, and so it would be in all programs.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BIN = os.path.abspath(os.environ.get("QDDOT_BIN", "build/bin"))
 
