@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from programs import Programs, run
+from programs import Programs, read, run
 
 # Half the spacing of 32-bit floats, relative: what rounding to them may change.
 FLOAT = 2.0**-24
@@ -45,7 +45,8 @@ def table(path):
     """Times, positions and velocities (frames x nodes x 3, zero beyond the dimension) of a
     --trajectory.
     """
-    values = np.genfromtxt(path, delimiter=",", skip_header=1)  # what is empty is nan
+    lines = read(path).split()[1:]
+    values = np.array([[float(field or "nan") for field in line.split(",")] for line in lines])
     nodes, columns = int(values[:, 1].max()) + 1, values.shape[1]
     dimension = (columns - 2) // 2
     frames = values.reshape(-1, nodes, columns)

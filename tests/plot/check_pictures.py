@@ -10,7 +10,7 @@ from matplotlib import image
 
 import studies
 from programs import run
-from study_tables import draw, read_table, texts_of
+from study_tables import draw, draw_again, read_table, texts_of
 
 # The pictures of each study, and the table whose column `method` the first of them must name.
 PICTURES = {
@@ -55,7 +55,7 @@ class Pictures(unittest.TestCase):
             self.assertTrue(methods)
             words = " ".join(texts_of(files[1]))
             self.assertEqual([name for name in methods if name not in words], [])
-        draw(f"{study}/{study}.py", results)
+        draw_again(f"{study}/{study}.py", results)
         self.assertEqual(first, [file.read_bytes() for file in files])
 
 

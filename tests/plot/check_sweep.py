@@ -9,7 +9,7 @@ from itertools import combinations
 from check_charts import ABOUT, COLUMNS, EXPLICIT, SOLVING, HandMade, a_sweep, crowd, write_study
 from names import one_line
 from sheet import Sheet
-from study_tables import draw, judge, read_table, texts_of, write_table
+from study_tables import draw, draw_again, judge, read_table, texts_of, write_table
 from style import use_style
 from sweep import Crossover, read
 from sweep_picture import cut, draw_title, in_two, sentences
@@ -141,7 +141,7 @@ class WhatIsSaid(Sweep):
         self.assertIn("The sweep was interrupted by a signal", words)
         files = [self.folder / f"fastest.{end}" for end in ("png", "svg")]
         first = [file.read_bytes() for file in files]
-        self.texts()
+        draw_again("sweep/sweep.py", self.folder)
         # The same numbers give the same picture.
         self.assertEqual(first, [file.read_bytes() for file in files])
         for file in files:
