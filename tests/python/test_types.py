@@ -4,6 +4,7 @@ import importlib.util
 import os
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import qddot
@@ -33,9 +34,13 @@ MISUSE = USER + "solution.energie\n"
 
 @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
 class Types(Programs):
+    @classmethod
+    def setUpClass(cls):
+        cls.cache = cls.enterClassContext(tempfile.TemporaryDirectory())
+
     def ends(self, status, *words):
         command, place = [sys.executable, "-m", *words], os.path.dirname(PACKAGE)
-        environment = {**os.environ, "MYPY_CACHE_DIR": os.path.abspath("cache")}
+        environment = {**os.environ, "MYPY_CACHE_DIR": self.cache}
         done = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
 
