@@ -4,8 +4,9 @@ import glob
 import os
 import signal
 import time
+from pathlib import Path
 
-from programs import Programs, sidecar, started, table, write
+from programs import Programs, sidecar, started, table, wait, write
 
 # A run that is long, into long.csv.
 LONG = (
@@ -18,14 +19,9 @@ STUDY = (
 )
 
 
-def wait_for(pattern, text=""):
-    """Waits until there is a file of such a name that holds the text, at most two minutes."""
-    for _ in range(12000):
-        for path in glob.glob(pattern):
-            with open(path, "rb") as file:
-                if text.encode() in file.read():
-                    return
-        time.sleep(0.01)
+def wait_for(pattern, text=b""):
+    """Waits until there is a file of such a name that holds the text."""
+    wait(lambda: any(text in Path(path).read_bytes() for path in glob.glob(pattern)))
 
 
 class Interruption(Programs):
@@ -50,7 +46,7 @@ class Interruption(Programs):
     def test_a_study_that_is_interrupted_has_its_tables_and_goes_on(self):
         process = started(STUDY)
         # A study whose journal has no piece yet has nothing to save.
-        wait_for("ended/work_precision.journal", "outcome")
+        wait_for("ended/work_precision.journal", b"outcome")
         ended = self.signalled(process, signal.SIGINT)
         self.complains(ended, 130, "interrupted by SIGINT", "--resume")
         before = len(table("ended/points.csv"))

@@ -50,14 +50,12 @@ local_global {--stiffness,--step-size,--until,--stiffnesses} 0 OUT | {} 0 is not
 scaling {--step-size,--point-limit,--memory-limit,--least-nodes,--most-nodes} 0 OUT | {} 0 is not allowed
 simulate --scene cloth --time-limit 0 | --time-limit 0 is not allowed | greater
 {work_precision --scene orbit,stock_sundials --scene orbit,crossover --ratios 1,local_global} --repeats {0,1001} OUT | --repeats {1} | from 1 to 1000
-
 advise --scene orbit --until 1 OUT | --accuracy is missing
 {advise OUT,simulate --final f.csv} --scene orbit --until 1 --accuracy {0,nan,1e-40,10} | --accuracy | from 1e-14 | below 1
 simulate --scene orbit --until 1 --accuracy 1e-3 --method verlet --final f.csv | --method | --accuracy
 simulate --scene orbit --until 1 --accuracy 1e-3 --rtol 1e-3 --final f.csv | --rtol
 simulate --scene orbit --until 1 --accuracy 1e-3 --accuracy-of speed | --accuracy-of speed | positions, path and energy
 simulate --scene orbit --until 1 --accuracy-of path --method verlet --step-size 0.1 | --accuracy-of
-
 simulate --scene oscillator --method {ida,arkode_dirk2,dprkn8} --rtol 1e-30 --final f.csv | --rtol 1e-30 | 1e-15
 simulate --scene flying.toml --method verlet --step-size 0.1 --final f.csv | --until | missing | greater than 0
 simulate --scene empty.toml --method verlet --step-size 0.1 --final f.csv | empty.toml | nodes
@@ -68,7 +66,6 @@ simulate --scene . --method verlet --step-size 0.1 --final f.csv | .:
 simulate --scene oscillator --method verlet --step-size 0.1 --final f.csv --energy {f.csv,./f.csv,f.json,f} --every 1 | {}
 simulate --scene orbit --method verlet --step-size 0.01 --every 0.1 --trajectory g.csv --energy e.csv --every 0.2 | --every | 0.1 | --trajectory
 simulate --scene orbit --method verlet --step-size 0.01 --every 0.1 | --every | --trajectory | --energy | --motion
-
 SIMULATE {verlet --until 1 --step-size,verlet --step-size 0.1 --until,ida --until 1 --rtol,ida --until 1 --rtol 1e-3 --atol} {nan,inf,0,-0.0025} | {0} | {1} | not allowed | greater than 0
 SIMULATE verlet --step-size 0.1 --until 1 --energy e.csv --every {nan,inf,0,-0.0025} | --every | {} | not allowed | greater than 0
 SIMULATE verlet --until 1 --step-size 1e999 | --step-size inf is not allowed
@@ -80,7 +77,6 @@ SIMULATE ida --until 1 --rtol 1e-3 --atol {10,1e-31} | --atol | below 10
 SIMULATE verlet --until 1 --step-size {9e-16,1e-20} | --step-size | at least 1e-15
 SIMULATE verlet --until 1 --step-size 1e200 | --step-size | 1e+150
 SIMULATE verlet --step-size 0.1 --until 1 --energy e.csv --every 1e-12 | --every | 1e-12 | allowed
-
 simulate --scene oscillator --step-size 0.1 --until 1 --final f.csv | --method | missing
 SIMULATE verlet --until 1 | --step-size | missing
 SIMULATE verlet --step-size 0.1 --until 1 --energy e.csv | --every | missing
@@ -91,18 +87,15 @@ SIMULATE verlet --step-size 0.1 --until 1 --integrator=verlet | --integrator
 SIMULATE verlet --step-size 0.1 --until 1 {--step-size,--until,--method,--scene,--final} 0.5 | {}
 SIMULATE {verlet,implicit_euler,arkode_trbdf2} --step-size 0.1 --until 1 {--rtol,--atol} 1e-3 | {1} | {0} | --step-size
 SIMULATE {ida,dprkn8,arkode_erk4} --rtol 1e-3 --until 1 --step-size 1e-3 | --step-size | {} | --rtol
-
 simulate --scene oscillator --method verlet --step-size 0.1 --until 1 --motion m.pc2 --every 0.1 {--final,--trajectory,--energy} {none/o.csv,/proc/o.csv,/etc/passwd/o.csv} | {1} | cannot be written | allowed
 simulate --scene oscillator --method verlet --step-size 0.1 --until 1 --motion m.pc2 --every 0.1 {--final,--trajectory,--energy} / | /: is a folder | allowed
 simulate --scene oscillator --method verlet --step-size 0.1 --until 1 --motion m.pc2 --every 0.1 {--final,--trajectory,--energy} '' | {}
-
 simulate --scene orbit --write-scene s.toml {--final f.csv,--energy e.csv --every 1,--step-size 0.1,--until 0.1} | --method | missing
 simulate --scene orbit --method verlet --step-size 0.1 --final f.csv --energy e.csv --every 1 --write-scene {f.csv,./f.csv,f.json,e.csv,e.json} | --write-scene | {} | another output | allowed
 simulate --scene dimension.toml --write-scene s.toml | dimension.toml:1 | dimension
 simulate --scene orbit --write-scene '' | --write-scene
 simulate --scene orbit --write-scene none/s.toml | none/s.toml | cannot be written | allowed
 simulate --scene orbit --method verlet --step-size 0.1 --write-scene s.toml --final none/f.csv | none/f.csv | cannot be written
-
 simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion {m.vtk,m} | --motion {} | .vtkhdf and .pc2
 simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion= | --motion
 simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --motion m.pc2 | --every is missing | --motion
@@ -116,22 +109,18 @@ simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.0
 simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion none/m.vtkhdf | none/m.vtkhdf | folder
 simulate --scene orbit --method verlet --step-size 1e-3 --until 0.05 --every 0.01 --motion a:b.vtkhdf | a:b.vtkhdf | colons
 simulate --scene huge.toml --method verlet --step-size 1e-4 --until 0.05 --every 0.01 --motion {m.vtkhdf,m.pc2} | 32-bit
-
 crossover --ratios {0,0.5,1e10} OUT | --ratios | from 1 to 1e+09
 crossover --ratios 10,1,10 OUT | --ratios: 10 | twice
 crossover --nodes {3,1001} --ratios 1 OUT | --nodes | {} | from 4 to 1000
 crossover --nodes 5 --ratios 1 --family carpet OUT | --family | carpet | allowed | whole
 crossover --nodes 5 --ratios 1 --methods exact OUT | exact | allowed
 crossover --nodes 5 --ratios 1 --until 0.01 --methods arkode_imex3 OUT | arkode_imex3 | stiff
-
 energy_drift --scene orbit --step-size 1 --until 0.5 OUT | --until 0.5 | 0.5 steps
 energy_drift --scene orbit --step-size 1e-9 --until 1e9 OUT | 1e+18 steps
 energy_drift --scene flying.toml OUT | --step-size is missing | flying.toml
-
 equilibrium --scene cloth --final '' | --final is missing
 equilibrium --scene cloth --final none/e.csv | none/e.csv
 equilibrium --scene cloth --finall x | --finall
-
 exchange --scene cloth OUT | cloth: stiff_above: it is missing
 exchange --scene framed_cloth OUT | framed_cloth | without energy
 exchange --scene fpu --h-omega 1,0.1,1 OUT | --h-omega: 1 is named twice
@@ -141,7 +130,6 @@ exchange --scene fpu --until 0.9 OUT | --until 0.9 | ten steps | 1 s
 exchange --scene fpu --every 21 OUT | --every 21 | tenth
 exchange --scene fpu --methods rodas4,cvode_bdf OUT | rodas4, cvode_bdf | fixed step
 exchange --scene fpu --methods exact OUT | exact needs a K
-
 local_global --step-size 1e-300 OUT | --step-size | at least
 local_global --step-size 1e300 OUT | --step-size | not allowed
 local_global --step-size 1e6 OUT | --step-size | at most | 1e+07 steps
@@ -154,7 +142,6 @@ local_global --nodes {2,401} OUT | --nodes | {} | from 3 to 400
 local_global --resolutions 4,2 OUT | --resolutions 2 | from 3 to 400
 local_global --iterations 0 OUT | --iterations 0 | from 1 to
 local_global --swing -1 OUT | --swing -1 | at least 0
-
 simulate --scene orbit --method ida --rtol 1e-3 --max-order {0,-1,6,100} | --max-order {} is not allowed | from 1 to 5
 simulate --scene orbit --method ida --rtol 1e-3 --max-order {text,1.5,nan,99999999999999999999} | --max-order | {} | allowed is a number
 simulate --scene orbit --method ida --rtol 1e-3 --max-order | --max-order
@@ -176,14 +163,11 @@ simulate --scene orbit --method exact --step-size 1 | orbit: exact | same everyw
 simulate --scene orbit --method arkode_imex3 --rtol 1e-3 | orbit: stiff_above: | arkode_imex3 | above 0 | verlet | implicit_euler
 work_precision --scene orbit --progress loud OUT | --progress loud | auto, plain, none
 work_precision --scene orbit --methods exact OUT | orbit | exact
-
 modes --scene cloth --count {0,1001} OUT | --count {} | from 1 to 1000
 modes --scene cloth --at rest OUT | --at: rest | drawn or equilibrium
 modes --scene falling.toml --at equilibrium OUT | falling.toml | falls for ever
-
 reversal --scene pendulum --steps 0 OUT | --steps 0 is not allowed
 reversal --scene pendulum --methods ida OUT | ida chooses its steps by itself
-
 scaling --scenes chain,rope OUT | rope | chain, cloth, lattice
 scaling --scenes chain,chain OUT | chain | twice
 scaling --solvers lu OUT | --solvers: lu | conjugate_gradients
@@ -192,26 +176,20 @@ scaling --methods dprkn8 OUT | dprkn8 | fixed step
 scaling --most-nodes 1e8 OUT | --most-nodes | 1e+07
 scaling --least-nodes 2000 --most-nodes 1000 OUT | --least-nodes 2000 | --most-nodes 1000
 scaling --sizes 0 OUT | --sizes 0 | from 1 to
-
 solvers --scene cloth --solvers multifrontal,lu OUT | --solvers: lu is not a solver; allowed are multifrontal, cholmod, eigen, klu
-
 stability_map --scene pendulum --columns 0 OUT | --columns | 0 | 1 to
 stability_map --scene pendulum --low -1 OUT | --low | -1
 stability_map --scene pendulum --low 3 --high 2 OUT | --high | 2 | 3
 stability_map --scene pendulum --vary colour OUT | colour | mass
 stability_map --scene strut --vary compression --amplitudes 1e9,2 OUT | compression = 1000000000 | not allowed
-
 stock_sundials --scene pendulum --methods {verlet,arkode_erk4,arkode_trbdf2,cvode_adams,ida_klu} OUT | --methods | {} | stock | allowed
 stock_sundials --scene pendulum --methods ida,verlet OUT | --methods | verlet
 stock_sundials --scene pendulum --rtol 1e-3,1e300 OUT | --rtol 1e+300 | below 1
-
 symmetric_roots --samples {0,100001} OUT | --samples {} | from 1 to 100000
 symmetric_roots --at {0,2.1} OUT | --at | {} | from 0.01 to 2
-
 verdicts --seeds 0 OUT | --seeds 0
 verdicts --cells 1 OUT | --cells 1
 verdicts --kinds nothing OUT | no kind "nothing" | random walk
-
 work_precision --scene orbit --out /proc/none | --out | /proc/none | allowed
 work_precision --scene orbit --out /etc/passwd | /etc/passwd | allowed
 work_precision --scene orbit OUT {--point-limit,--until} | {}
@@ -223,7 +201,6 @@ convergence --scene orbit --until 0.1 --out {order.csv,order.json}.is_taken | .i
 energy_drift --scene orbit --until 10 --out {drift.csv,summary.csv}.is_taken | .is_taken/{}
 stability_map --scene orbit --until 1 --out {map.csv,limits.csv}.is_taken | .is_taken/{}
 simulate --scene oscillator --method verlet --step-size 0.1 --until 1 --final f.json.is_taken/f.csv | f.json.is_taken/f.json
-
 sweep | the action is missing
 sweep sweep S | sweep is no action of sweep
 sweep run | the sweep's folder is missing
@@ -238,7 +215,6 @@ sweep submit S | --slurm or --parallel
 sweep submit S --slurm --shards 0 | --shards 0
 sweep status nothing | tasks.jsonl: it is missing
 sweep plan study.toml | --out is missing
-
 work_precision --scene massless.toml --methods verlet OUT | massless.toml | nodes[1].mass | allowed
 work_precision --scene flying.toml --methods verlet OUT | --until | missing
 """

@@ -14,7 +14,7 @@ import time
 import unittest
 import zlib
 
-from programs import BIN, Programs, Study, read, run, sidecar, started, table, write
+from programs import BIN, Programs, Study, read, run, sidecar, started, table, wait, write
 
 # Two scenes, few methods, and runs short enough to be repeated often; which points are taken does
 # not depend on how long they take.
@@ -235,13 +235,6 @@ class Tasks(Sweeps):
             "[options]\npoint-limit = 60\n"
         )
         self.done(REFERENCES)
-
-        def wait(is_so):
-            for _ in range(12000):
-                if is_so():
-                    return
-                time.sleep(0.01)
-            self.fail("it was waited for two minutes")
 
         def is_running():
             return "1 running" in run("sweep status S").stdout

@@ -14,6 +14,7 @@ import shlex
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 # Where a shell has started this aside, SIGINT is ignored, and so it would be in all programs.
@@ -85,7 +86,9 @@ def rows_of(text):
     return [dict(zip(names, map(value_of, row))) for row in rows]
 
 
-def table(path):
+def table(path, columns=None):
+    """The rows of a table; `columns`: its header as it must be."""
+    assert columns in (None, header(path)), f"{path}: {header(path)}"
     return rows_of(read(path))
 
 
@@ -115,6 +118,15 @@ def started(line):
     )
 
 
+def wait(is_so):
+    """Waits until something is so, at most two minutes."""
+    for _ in range(12000):
+        if is_so():
+            return
+        time.sleep(0.01)
+    raise AssertionError("it did not come in two minutes")
+
+
 class Study:
     """The words and files of a command line, in a folder that lasts to the end of all tests."""
 
@@ -132,8 +144,8 @@ class Study:
     def __truediv__(self, name):
         return os.path.join(self.path, name)
 
-    def table(self, name):
-        return table(self / name)
+    def table(self, name, columns=None):
+        return table(self / name, columns)
 
     def sidecar(self, name):
         return sidecar(self / name)

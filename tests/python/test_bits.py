@@ -14,13 +14,13 @@ METHODS = {
     "blanes_moan6": {"step_size": 2e-3},
     "symmetric8": {"step_size": 1e-3},
     "dprkn8": {"rtol": 1e-7},
-    "implicit_midpoint": {"step_size": 5e-3},
+    "implicit_midpoint": {"step_size": 5e-3, "solve_tolerance": 1e-4},
     "rodas4": {"rtol": 1e-4},
     "generalized_alpha": {"step_size": 5e-3, "spectral_radius": 0.6},
     "semi_implicit_euler": {"step_size": 1e-3},
     "arkode_dirk4": {"rtol": 1e-5},
     "cvode_bdf": {"rtol": 1e-6, "max_order": 3},
-    "ida": {"rtol": 1e-5},
+    "ida": {"rtol": 1e-5, "atol": 1e-6},
 }
 
 
