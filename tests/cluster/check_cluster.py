@@ -225,10 +225,8 @@ def tell_more():
     for path in sorted(logs + glob.glob("S/log/*")):
         subprocess.run(["tail", "-v", "-n", "30", path], check=False)
     for argv in (
-        ["squeue", "--array"],
-        ["sinfo", "--Node", "--long"],
-        words_of("sweep status S"),
-    ):
+        ["squeue", "--array"], ["sinfo", "--Node", "--long"], words_of("sweep status S"),
+    ):  # fmt: skip
         print(f"--- {' '.join(argv)}", flush=True)
         subprocess.run(["timeout", "30", *argv], check=False)
 

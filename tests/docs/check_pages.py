@@ -163,8 +163,7 @@ class Words(unittest.TestCase):
         for value, words in ((1.04, "1.0"), (12.5, "12"), (12345, "12,000"), (9.1e-7, "9.1e-7"), (0, "0"),
                              (-0.25, "−0.25"), (float("inf"), "∞"), (1e-4, "1e-4"), (0.996, "1.0")):  # fmt: skip
             self.assertEqual(words, page_data.figures(value))
-        self.assertEqual("1e-3", page_data.accuracy(0.001))
-        self.assertEqual("97 %", page_data.percent(0.974))
+        self.assertEqual(("1e-3", "97 %"), (page_data.accuracy(0.001), page_data.percent(0.974)))
 
     def test_what_is_not_there_is_an_error(self):
         for call in (

@@ -31,15 +31,10 @@ from sandbox import Sandbox
 
 # How often each is drawn: what takes longer is drawn less.
 DRAWN = {
-    30: "simulate",
-    8: "equilibrium modes work_precision convergence stability_map energy_drift",
-    6: "exchange",
-    5: "stock_sundials local_global",
-    4: "reversal crossover",
-    3: "advise",
-    2: "solvers symmetric_roots sweep",
-    0.5: "scaling verdicts bench advice",
-}
+    30: "simulate", 8: "equilibrium modes work_precision convergence stability_map energy_drift",
+    6: "exchange", 5: "stock_sundials local_global", 4: "reversal crossover", 3: "advise",
+    2: "solvers symmetric_roots sweep", 0.5: "scaling verdicts bench advice",
+}  # fmt: skip
 PROGRAMS = {name: often for often, names in DRAWN.items() for name in names.split()}
 
 

@@ -13,8 +13,7 @@ from pathlib import Path
 @dataclass
 class Run:
     """How a run ended: `status` as a shell has it, negative for a signal; None if nothing ended
-    it.
-    """
+    it."""
 
     status: int | None
     out: bytes
@@ -27,8 +26,7 @@ class Run:
 
 def limit_this_process(memory=None, file_size=None):
     """Limits this process and all that it starts: bytes of address space and of a file, no core
-    files. SIGINT is no longer ignored, as it is in what a shell starts in the background.
-    """
+    files. SIGINT is no longer ignored, as it is in what a shell starts in the background."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if memory:
@@ -72,8 +70,7 @@ def cpu_of(pid):
 
 def _ended(process, cpu, wall):
     """Waits until the process ends, or has had `cpu` s of the processor from now on or `wall` s
-    passed.
-    """
+    passed."""
     until, most = time.monotonic() + wall, cpu_of(process.pid) + cpu
     while (left := until - time.monotonic()) > 0 and cpu_of(process.pid) < most:
         try:
@@ -90,20 +87,13 @@ def run(
     """Runs `argv` in `folder` for at most `cpu` s of processor time or `wall` s, or `stop_after` s.
 
     After that sends `stop_signal` and waits for the end as long as `patience` (processor time) or
-    four times that, before the process is killed and the status is None.
-    """
+    four times that, before the process is killed and the status is None."""
     started, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     # SIGXFSZ stays ignored as it is in Python: to write too much is an error, no signal.
     process = subprocess.Popen(
-        argv,
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        restore_signals=False,
-        start_new_session=True,
-    )
+        argv, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, restore_signals=False, start_new_session=True,
+    )  # fmt: skip
     # So that it ends even if nobody is left to end it.
     last = int(cpu + patience) + 2
     resource.prlimit(process.pid, resource.RLIMIT_CPU, (last, last))
@@ -121,11 +111,6 @@ def run(
     out, err = process.communicate()
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return Run(
-        process.returncode if ended else None,
-        out,
-        err,
-        time.monotonic() - started,
-        after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
-        asked,
-        to_end,
-    )
+        process.returncode if ended else None, out, err, time.monotonic() - started,
+        after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, asked, to_end,
+    )  # fmt: skip

@@ -103,8 +103,7 @@ class Commands:
 
     def hostile(self, random, option):
         """A value that may well be refused: of another kind, too large, a path of trouble,
-        spoiled.
-        """
+        spoiled."""
         kind = random.random()
         if kind > 0.97:
             text = self.sensible(random, option)

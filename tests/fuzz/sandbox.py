@@ -21,24 +21,15 @@ OWN = {
     "body.obj": b"v 0 0 0\n",
 }
 LINKS = {
-    "link.toml": "scene.toml",
-    "loop": "loop",
-    "dangling": "nowhere/file",
-    "zero": "/dev/zero",
-    "full": "/dev/full",
-    "fifo.obj": "fifo",
-    "folder.mesh": "folder",
-    "locked.obj": "locked.toml",
-    "zero.obj": "/dev/zero",
-    "zero.msh": "/dev/zero",
-    "loop.mesh": "loop",
-}
+    "link.toml": "scene.toml", "loop": "loop", "dangling": "nowhere/file", "zero": "/dev/zero",
+    "full": "/dev/full", "fifo.obj": "fifo", "folder.mesh": "folder", "locked.obj": "locked.toml",
+    "zero.obj": "/dev/zero", "zero.msh": "/dev/zero", "loop.mesh": "loop",
+}  # fmt: skip
 
 
 class Sandbox:
     """The folder `here` of `root`, made anew from `files` (name to bytes) and the folder
-    `earlier`, if any.
-    """
+    `earlier`, if any."""
 
     def __init__(self, root, files, earlier=None):
         self.root, self.here, self.home = root, os.path.join(root, "here"), f"{root}/home"

@@ -54,8 +54,7 @@ def json_of(path):
 
 def faults(folder, names):
     """Sentences on files among `names` in `folder` that are not whole: tables, sidecars,
-    leftovers.
-    """
+    leftovers."""
     for name in sorted(names):
         path = os.path.join(folder, name)
         if name.endswith(".part"):

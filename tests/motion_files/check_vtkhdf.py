@@ -64,8 +64,7 @@ def strains_of(drawn, positions):
 
 def check_strains(found, drawn, positions, first_line):
     """Strain is a difference of lengths, so that their rounding (17 digits in the table, whole
-    doubles in the run: some 1e-15) counts beside that of the number itself.
-    """
+    doubles in the run: some 1e-15) counts beside that of the number itself."""
     wanted = strains_of(drawn, positions)
     lines = found[:, first_line : first_line + wanted.shape[1]]
     assert (np.abs(lines - wanted) <= SHORT * np.abs(wanted) + 1e-14).all()

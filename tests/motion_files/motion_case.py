@@ -43,8 +43,7 @@ def run_words(scene, more):
 
 def table(path):
     """Times, positions and velocities (frames x nodes x 3, zero beyond the dimension) of a
-    --trajectory.
-    """
+    --trajectory."""
     lines = read(path).split()[1:]
     values = np.array([[float(field or "nan") for field in line.split(",")] for line in lines])
     nodes, columns = int(values[:, 1].max()) + 1, values.shape[1]

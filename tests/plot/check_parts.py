@@ -189,8 +189,7 @@ class Causes(unittest.TestCase):
         height = causes.strip_height(failures.failing(sweeps))
         # Six lines and a title; 4 cm are 1.57 in, and without a limit it would be 15 in.
         self.assertLess(height, 1.7)
-        self.assertEqual(self.lines(*sweeps)[-1][0], "other causes")
-        self.assertEqual(causes.strip_height({}), 0)
+        self.assertEqual((self.lines(*sweeps)[-1][0], causes.strip_height({})), ("other causes", 0))
 
 
 class Looks(unittest.TestCase):
@@ -240,8 +239,7 @@ class Words(unittest.TestCase):
         )
 
     def test_long_and_odd_names_fit_one_line(self):
-        self.assertEqual(names.shown("a\nb"), "a b")
-        self.assertEqual(names.shown("$x$"), r"\$x\$")
+        self.assertEqual((names.shown("a\nb"), names.shown("$x$")), ("a b", r"\$x\$"))
         self.assertEqual(len(names.shown("n" * 200)), names.LONGEST)
         self.assertEqual(
             style.short_names(["arkode_erk_4", "arkode_erk_5", "ida"]),
@@ -251,13 +249,9 @@ class Words(unittest.TestCase):
     def test_where_in_a_sweep_runs_failed(self):
         sweep = [1e-3, 1e-2, 1e-1, 1]
         for failed, words in (
-            (sweep, "every h"),
-            ([1e-1, 1], "h ≥ 0.1"),
-            ([1e-3, 1e-2], "h ≤ 1e-2"),
-            ([1e-2], "h = 1e-2"),
-            ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"),
-            ([1e-3, 1e-1], "h = 1e-3, 0.1"),
-        ):
+            (sweep, "every h"), ([1e-1, 1], "h ≥ 0.1"), ([1e-3, 1e-2], "h ≤ 1e-2"),
+            ([1e-2], "h = 1e-2"), ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"), ([1e-3, 1e-1], "h = 1e-3, 0.1"),
+        ):  # fmt: skip
             self.assertEqual(failures.span_in_words(failed, sweep, "h"), words)
         near_limit = [1e-3, 1.61e-3, 1.62e-3, 1e-2]
         self.assertEqual(failures.span_in_words(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")

@@ -269,8 +269,7 @@ class Places(Sweep):
 
     def test_names_are_broken_where_they_may_be(self):
         self.assertEqual(in_two("cloth_nodes_30"), ("cloth_", "nodes_30"))
-        self.assertEqual(in_two("abcdefgh_i"), ("abcde", "fgh_i"))
-        self.assertEqual(cut("abcdefgh", 5), "ab…gh")
+        self.assertEqual((in_two("abcdefgh_i"), cut("abcdefgh", 5)), (("abcde", "fgh_i"), "ab…gh"))
 
     def test_no_text_is_over_another(self):
         # The narrowest columns, the longest names of methods and scenes, every sentence.

@@ -38,11 +38,9 @@ MOVED = (
 # Three springs in a row between two pins, compressed.
 STRUT = scene(
     [
-        pin(0, 0),
-        node(0.9, 0, velocity=[0.1, 0], mass=0.1),
-        node(1.8, 0, velocity=[-0.2, 0], mass=0.1),
-        pin(2.7, 0),
-    ],
+        pin(0, 0), node(0.9, 0, velocity=[0.1, 0], mass=0.1),
+        node(1.8, 0, velocity=[-0.2, 0], mass=0.1), pin(2.7, 0),
+    ],  # fmt: skip
     [spring(i, i + 1, 1000, rest_length=1) for i in range(3)],
     until=0.7,
 )
@@ -309,14 +307,10 @@ class Records(Programs):
         self.refused(line + " --scene oscillator", "--scene", "--judge")
         for name, text, *said in (
             ("front.csv", "accuracy,method,value,stability_margin\n2,verlet,1,\n", "row 1", "'2'"),
-            ("front.csv", "scene\n", "accuracy"),
-            ("front.csv", None),
-            ("reference.json", "{", ""),
-            ("reference.json", '{"certified_position": "small"}', ""),
-            ("reference.json", None),
-            ("points.csv", "scene\n", "method"),
-            ("points.csv", None, ""),
-        ):
+            ("front.csv", "scene\n", "accuracy"), ("front.csv", None), ("reference.json", "{", ""),
+            ("reference.json", '{"certified_position": "small"}', ""), ("reference.json", None),
+            ("points.csv", "scene\n", "method"), ("points.csv", None, ""),
+        ):  # fmt: skip
             os.remove(name) if text is None else write(name, text)
             if said:
                 self.refused(line, name, *said)

@@ -194,8 +194,7 @@ class Programs(unittest.TestCase):
         with self.subTest(line):
             before = list(os.walk("."))
             ended = self.complains(line, 2, *fragments)
-            self.assertEqual(ended.stdout, "")
-            self.assertEqual(list(os.walk(".")), before)
+            self.assertEqual((ended.stdout, list(os.walk("."))), ("", before))
 
     def signalled(self, process, signal):
         """How a process ended after the signal."""

@@ -26,16 +26,11 @@ def random_scene(seed, dimension=3):
     positions = positions + 0.1 * random.standard_normal((nodes, dimension))
     springs = [(i, i + 1) for i in range(nodes - 1)] + [(i, i + 2) for i in range(nodes - 2)]
     return qddot.Scene(
-        positions=positions,
-        springs=springs,
-        stiffness=random.uniform(100, 1000, len(springs)),
-        mass=random.uniform(0.1, 0.3, nodes),
-        pinned=[0],
-        gravity=-9.81 * np.eye(dimension)[-1],
+        positions=positions, springs=springs, stiffness=random.uniform(100, 1000, len(springs)),
+        mass=random.uniform(0.1, 0.3, nodes), pinned=[0], gravity=-9.81 * np.eye(dimension)[-1],
         velocities=random.standard_normal((nodes, dimension)),
-        rest_length=random.uniform(0.4, 0.6, len(springs)),
-        name=f"random {seed}",
-    )
+        rest_length=random.uniform(0.4, 0.6, len(springs)), name=f"random {seed}",
+    )  # fmt: skip
 
 
 def duffing_force(q, f):
@@ -98,12 +93,9 @@ class Chain:
         return qddot.Scene(
             positions=np.concatenate(([[0.0, 0.0]], q, [[self.nodes + 1.0, 0.0]])),
             velocities=np.pad(v, ((1, 1), (0, 0))),
-            springs=[(i, i + 1) for i in range(self.nodes + 1)],
-            stiffness=self.k,
-            mass=1.0,
-            rest_length=self.rest,
-            pinned=[0, self.nodes + 1],
-        )
+            springs=[(i, i + 1) for i in range(self.nodes + 1)], stiffness=self.k, mass=1.0,
+            rest_length=self.rest, pinned=[0, self.nodes + 1],
+        )  # fmt: skip
 
     def system(self, **changes):
         given = {"force": self.force, "potential": self.potential, "stiffness": self.stiffness}

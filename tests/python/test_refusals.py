@@ -305,8 +305,7 @@ class Meaning(Programs):
     def test_failures_are_solutions(self):
         failed = solve(step_size=0.05, until=10, save_at=np.linspace(0, 10, 11))
         self.assertFalse(failed.success)
-        self.assertEqual(failed.outcome, "diverged")
-        self.assertEqual(len(failed.t), len(failed.q))
+        self.assertEqual((failed.outcome, len(failed.t)), ("diverged", len(failed.q)))
         self.assertLess(len(failed.t), 11)
         self.assertTrue(np.all(np.isfinite(failed.end.q)))
         with self.assertRaisesRegex(qddot.RunFailed, "smaller step") as raised:

@@ -138,8 +138,7 @@ class Page(unittest.TestCase):
     def check_logs(self, path):
         """Compares what was asked for with the one file."""
         said, asked = self.browser.logs()
-        self.assertEqual(said, [])
-        self.assertEqual({url.split("#")[0] for url in asked}, {path.as_uri()})
+        self.assertEqual((said, {url.split("#")[0] for url in asked}), ([], {path.as_uri()}))
 
     @property
     def chosen(self):

@@ -18,15 +18,11 @@ import report
 from packed_folder import Folder, Page, elements, pack
 
 HOSTILE = (
-    "</script><script>alert(1)</script>",
-    "<!-- <script> -->",
-    "\"><img src=x onerror=alert(1)> ' & &amp; ]]>",
-    "{{title}} <!-- qddot:data -->",
-    "a\u2028b\u2029c\x00\x1b\x7f\r\n\tend",
-    "\u202eright to left\u202c \u200f \u2066",
-    "\ud800 half of a pair",
-    "$x$ \\u003c \\",
-)
+    "</script><script>alert(1)</script>", "<!-- <script> -->",
+    "\"><img src=x onerror=alert(1)> ' & &amp; ]]>", "{{title}} <!-- qddot:data -->",
+    "a\u2028b\u2029c\x00\x1b\x7f\r\n\tend", "\u202eright to left\u202c \u200f \u2066",
+    "\ud800 half of a pair", "$x$ \\u003c \\",
+)  # fmt: skip
 
 
 class Names(Folder):
@@ -290,13 +286,10 @@ class Motions(Folder):
         before = (self.folder / "motions.json").read_text()
         for other, is_shown in (
             (told(__solver=["cholmod"], __point_limit=["2"]), True),
-            (told(__solver=["klu", "cholmod"]), True),
-            ({"study": {}}, True),
-            (told(__solver=["klu"], __methods=["verlet"]), False),
-            (told(), False),
-            ({"until": 0.25}, False),
-            ({"scene": {"hash": "another"}}, False),
-        ):
+            (told(__solver=["klu", "cholmod"]), True), ({"study": {}}, True),
+            (told(__solver=["klu"], __methods=["verlet"]), False), (told(), False),
+            ({"until": 0.25}, False), ({"scene": {"hash": "another"}}, False),
+        ):  # fmt: skip
             (self.folder / "motions.json").write_text(before)
             self.edit("motions.json", lambda content, other=other: content.update(other))
             data = self.page().data

@@ -183,8 +183,7 @@ class Moving(Page):
         self.load(self.made)
         drawings, listening = self.browser.run(CHOICES)
         # The chart, the failures and two of energies, the same ones all the time.
-        self.assertEqual(drawings, 4)
-        self.assertEqual(listening[1], listening[-1])
+        self.assertEqual((drawings, listening[1]), (4, listening[-1]))
 
     def test_only_a_line_is_drawn_with_its_displacements_upwards(self):
         for dimension, is_upwards in ((1, True), (2, False)):

@@ -167,8 +167,7 @@ class Motions(Folder):
             "0.12345678901234567\na,0.5,nan,,inf\n"
         )
         found = motion_files.read_energies(self.folder)["a"]
-        self.assertEqual(found["t"], [0.01234568, 0.5])
-        self.assertEqual(found["kinetic"], [2.345679e-5, None])
+        self.assertEqual((found["t"], found["kinetic"]), ([0.01234568, 0.5], [2.345679e-5, None]))
         self.assertEqual(found["potential"], [-1.234568, None])
         self.assertEqual(found["total"], [0.12345678901234567, None])
 

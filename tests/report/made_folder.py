@@ -1,6 +1,5 @@
 """Makes a folder as ./run report finds it, of a motion and measurements that formulas give: a sheet
-(3D), a chain (2D) or a row (1D) that swings.
-"""
+(3D), a chain (2D) or a row (1D) that swings."""
 
 import json
 from pathlib import Path

@@ -92,22 +92,15 @@ def sidecar(scene, dimension, nodes, springs):
         "methods": [{"name": m.name, "summary": m.summary, "takes": []} for m in METHODS],
         "outcomes": outcomes | {"over_budget": "the run was stopped because its time was up"},
         "reduced": {
-            "omega_max": 3281.4,
-            "largest_stable_step": 6.1e-4,
-            "parts": 1,
+            "omega_max": 3281.4, "largest_stable_step": 6.1e-4, "parts": 1,
             "reductions": [{"name": "pins", "what": "2 pinned nodes stay where drawn"}],
-            "stiffness_is_constant": False,
-            "unknowns": max(1, dimension * (nodes - 2)),
-            "unknowns_drawn": dimension * nodes,
-            "unstable_directions": 0,
-        },
+            "stiffness_is_constant": False, "unknowns": max(1, dimension * (nodes - 2)),
+            "unknowns_drawn": dimension * nodes, "unstable_directions": 0,
+        },  # fmt: skip
         "scene": {
-            "dimension": dimension,
-            "hash": "0123456789abcdef",
-            "name": scene,
-            "nodes": nodes,
+            "dimension": dimension, "hash": "0123456789abcdef", "name": scene, "nodes": nodes,
             "springs": springs,
-        },
+        },  # fmt: skip
         "study": {"options": {"--point-limit": ["0.5"]}, "program": "work_precision"},
         "until": UNTIL,
         "version": "0.1.0",
@@ -117,21 +110,13 @@ def sidecar(scene, dimension, nodes, springs):
 def reference(scene, displacement):
     """What reference.json says."""
     return {
-        "beyond_horizon": False,
-        "certified_position": CERTIFIED,
-        "certified_velocity": 3e-12,
-        "certified_energy": 2e-13,
-        "chaotic": False,
-        "horizon": None,
-        "lyapunov": 0.0,
+        "beyond_horizon": False, "certified_position": CERTIFIED, "certified_velocity": 3e-12,
+        "certified_energy": 2e-13, "chaotic": False, "horizon": None, "lyapunov": 0.0,
         "made_by": "kahan_li8 at h = 0.0001 s; Boost.odeint Fehlberg 7(8) at tolerance 1e-13",
-        "modal_shares_floor": 0.0,
-        "only_symmetric": False,
-        "rounding_effect": 3e-15,
+        "modal_shares_floor": 0.0, "only_symmetric": False, "rounding_effect": 3e-15,
         "scales": {"displacement": displacement, "kinetic": 0.2, "parts": [], "speed": 1.1},
-        "scene": scene,
-        "until": UNTIL,
-    }
+        "scene": scene, "until": UNTIL,
+    }  # fmt: skip
 
 
 def write_study(folder, scene, dimension, nodes, springs, displacement):
