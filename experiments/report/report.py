@@ -93,6 +93,9 @@ def main(arguments):
     except BadInput as error:
         print(error, file=sys.stderr)
         return 2
+    except (AttributeError, TypeError) as error:
+        print(f"{directory}: a .json file is not as qddot writes it: {error}.", file=sys.stderr)
+        return 2
     return 0
 
 

@@ -1,5 +1,6 @@
 """The pages of docs/ and README.md: what they say is measured, links lead somewhere, samples run."""
 
+import json
 import math
 import re
 import subprocess
@@ -12,6 +13,7 @@ from unittest import mock
 import chart_data
 import page_data
 import page_text
+import studies
 import study as entries
 from programs import BIN, rows_of, run
 
@@ -79,6 +81,29 @@ class Numbers(unittest.TestCase):
                     self.assertEqual("", study.due())
                 for name in study.pictures.values():
                     self.assertTrue((entries.PICTURES / f"{name}.png").exists())
+
+
+class Runner(unittest.TestCase):
+    """What `./run studies` measures and keeps."""
+
+    def test_a_study_is_kept_where_it_ends_well_and_due_where_it_is_another(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for name in ("DATA", "PICTURES", "RESULTS"):
+            self.enterContext(mock.patch.object(entries, name, folder / name))
+        study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv")
+        self.assertEqual("not measured", study.due())
+        for sources, goes_on in ((entries.source_hash(), True), ("others", False)):
+            begun = {"source_hash": sources, "commands": study.commands, "seconds": 100}
+            entries.write_whole(study.folder / "begun.json", json.dumps(begun))
+            studies.make(study, again=False)
+            self.assertEqual((goes_on, ""), (study.record["seconds"] >= 100, study.due()))
+        study.needs = ["another"]
+        self.assertEqual("changed since: another", study.due())
+        study.commands = ["simulate --list-scenes --csv"]
+        self.assertIn("measured by another command", study.due())
+        bad = entries.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])
+        self.assertRaises(SystemExit, studies.make, bad, again=False)
+        self.assertIsNone(bad.record)
 
 
 class Form(unittest.TestCase):
@@ -175,6 +200,14 @@ class Words(unittest.TestCase):
         ):
             with self.assertRaises(page_data.BadPage):
                 call()
+
+    def test_the_fastest_is_the_fastest(self):
+        runs = [run for run in chart_data.runs("cloth") if not run.failure and run.at_most <= 1e-4]
+        best = chart_data.fastest("cloth", 1e-4)
+        self.assertEqual(min(run.time for run in runs), best.seconds)
+        second = chart_data.fastest("cloth", 1e-4, but=[best.method])
+        self.assertTrue(second.method != best.method and second.seconds >= best.seconds)
+        self.assertFalse(chart_data.fastest("cloth", 1e-4, of=["explicit_euler"]))
 
     def crossing_of(self, times):
         """The crossing of kinds with these times by ratio, explicit and implicit; None: not reached."""

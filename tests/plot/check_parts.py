@@ -2,6 +2,7 @@
 and word numbers as they say."""
 
 import json
+import math
 import tempfile
 import unittest
 from pathlib import Path
@@ -131,6 +132,8 @@ class Prominent(unittest.TestCase):
         strokes = {s[0].method: chosen.stroke(view, s) for s in record.sweeps(runs)}
         self.assertEqual(strokes["fine"].alpha, 1)
         self.assertGreater(min(style.to_rgb(strokes["slow3"].color)), 0.7)
+        widths = [strokes[name].line["linewidth"] for name in ("slow3", "fine")]
+        self.assertLess(*widths)
         self.assertEqual(chosen.looks["bdf_klu"].family, style.STOCK)
         # Among few lines, far ones are not faint.
         everything = emphasis.Everything([view])
@@ -144,9 +147,12 @@ class Prominent(unittest.TestCase):
         strong = self.strong(runs)
         self.assertEqual(len(strong), prominent.MOST)
         self.assertEqual(strong[:10], [f"front{i}" for i in range(2, 11)] + ["f0"])
-        stretches = list(band.stretches(a_view(runs[:2]).front))
-        self.assertEqual([method for method, _, _ in stretches], ["front2", "front3"])
-        self.assertAlmostEqual(stretches[0][1], stretches[1][2])
+        # a goes from 1e-1 to 1e-3 and half a decade beyond, b from there on.
+        front = a_view([a_run("a", error=5e-4), a_run("b", error=5e-6, time=2)]).front
+        ends = [(name, *map(math.log10, ends)) for name, *ends in band.stretches(front)]
+        for found, wanted in zip(ends, (("a", -3.5, -0.5), ("b", -5.5, -3.5)), strict=True):
+            for one, other in zip(found, wanted):
+                self.assertAlmostEqual(one, other)
 
     def test_where_none_is_accurate_the_smallest_error(self):
         runs = [a_run(f"m{i}", error=2 - 0.05 * i, time=1 + i) for i in range(20)]
@@ -182,6 +188,10 @@ class Causes(unittest.TestCase):
             ("Newton failed", 1, "some rtol between"),
         ]
         self.assertEqual(found, expected)
+
+    def test_many_names_are_shortened(self):
+        shorter = causes.shortening(["a", "b", "c"])[1:]
+        self.assertEqual(shorter, ["a, b and 1 more", "a and 2 more"])
 
     def test_the_strip_is_low_whatever_failed(self):
         sweeps = [self.sweep(f"m{i}", [f"cause_{i % 9}", None, f"end_{i}"]) for i in range(60)]
@@ -238,6 +248,12 @@ class Words(unittest.TestCase):
             ["3 s", "5 ms", "20 µs", "4 ns", "0.001 ns", "1 s"],
         )
 
+    def test_a_narrow_range_is_widened_about_its_middle(self):
+        low, high = style.widened(1.0, 2.0, 1)
+        self.assertAlmostEqual(high / low, 10)
+        self.assertAlmostEqual(low * high, 2.0)
+        self.assertEqual(style.widened(1.0, 100.0, 1), (1.0, 100.0))
+
     def test_long_and_odd_names_fit_one_line(self):
         self.assertEqual((names.shown("a\nb"), names.shown("$x$")), ("a b", r"\$x\$"))
         self.assertEqual(len(names.shown("n" * 200)), names.LONGEST)
@@ -253,6 +269,7 @@ class Words(unittest.TestCase):
             ([1e-2], "h = 1e-2"), ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"), ([1e-3, 1e-1], "h = 1e-3, 0.1"),
         ):  # fmt: skip
             self.assertEqual(failures.span_in_words(failed, sweep, "h"), words)
+        self.assertEqual(failures.span_in_words([1e-3], [1e-3], "h"), "h = 1e-3")
         near_limit = [1e-3, 1.61e-3, 1.62e-3, 1e-2]
         self.assertEqual(failures.span_in_words(near_limit[1:3], near_limit, "h"), "h = 1.6e-3")
 

@@ -56,6 +56,14 @@ class Interruption(Programs):
         self.assertGreaterEqual(len(table("ended/points.csv")), before)
         self.assertIn("nothing is missing", self.done(STUDY + " --resume").stderr)
 
+    def test_the_study_that_pages_show_goes_on(self):
+        # Two million steps take longer than the limit on any machine.
+        line = "reversal --scene pendulum --until 1 --methods verlet,position_verlet --steps 1e-6 --out ."
+        self.complains(line + " --time-limit 0.02", 3, "interrupted by --time-limit")
+        self.done(line + " --resume")
+        self.assertEqual(len(table("reversal.csv")), 2)
+        self.assertIn("nothing is missing", self.done(line + " --resume").stderr)
+
     def test_unfinished_files_of_the_dead_go_and_those_of_the_living_stay(self):
         for name in ("a.csv.999999.part", "a.csv.part", "notes.part"):
             write(name, "the user's, or half")

@@ -37,8 +37,8 @@ EXCHANGE = (
     " --h-omega 0.1,2.25 --out out"
 )
 MAP = (
-    "stability_map --scene oscillator --amplitudes 1 --methods verlet,implicit_euler,ida --low 1"
-    " --high 4 --columns 3 --out out"
+    "stability_map --scene oscillator --amplitudes 1 --low 1 --high 4 --columns 3 --out out"
+    " --methods verlet,implicit_euler,ida,explicit_euler,trapezoidal"
 )
 VERDICTS = "verdicts --seeds 3 --cells 512 --out out"
 ROOTS = "symmetric_roots --samples 6 --at 0.5 --out out"
@@ -438,7 +438,7 @@ class Stability(Programs):
 
     def test_the_map_has_a_row_for_each_run_and_theory_beside_it(self):
         rows = made(MAP).table("out/map.csv")
-        self.assertEqual(len(rows), 9)  # 3 of each, ida's at its tolerances
+        self.assertEqual(len(rows), 15)  # 3 of each, ida's at its tolerances
         for one, h_omega in zip(rows, (1, 2, 4)):
             self.near(one["h_omega"] / h_omega, 1, 1e-14)
             self.near(one["h"] / h_omega, 0.1, 1e-15)
@@ -447,10 +447,12 @@ class Stability(Programs):
         rate = math.log(7 + math.sqrt(48)) / 0.4
         self.near(rows[2]["predicted_growth_rate"] / rate, 1, 1e-12)
         self.near(rows[2]["growth_rate"] / rate, 1, 1e-3)
-        for one, h_omega in zip(rows[3:6], (1, 2, 4)):  # |1 + i h w| a step, without any transient
-            rate = -math.log1p(h_omega**2) / (0.2 * h_omega)
-            self.near(one["growth_rate"] / rate, 1, 1e-6)
-            self.assertEqual(one["outcome"], "leaked")
+        for implicit, explicit, h_omega in zip(rows[3:6], rows[9:12], (1, 2, 4)):
+            rate = math.log1p(h_omega**2) / (0.2 * h_omega)  # |1 + i h w| a step, no transient
+            self.near(explicit["growth_rate"] / rate, 1, 1e-6)
+            self.near(implicit["growth_rate"] / rate, -1, 1e-6)
+            self.assertEqual((implicit["outcome"], explicit["outcome"]), ("leaked", "diverged"))
+        self.assertEqual({one["outcome"] for one in rows[12:]}, {"bounded"})
         self.assertEqual((rows[6]["predicted_growth_rate"], rows[6]["knob"]), (None, "rtol"))
         self.near(made(MAP).sidecar("out/map.json")["omega_max"], 10, 1e-11)
 

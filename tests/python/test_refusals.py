@@ -334,7 +334,7 @@ class Meaning(Programs):
         self.assertTrue(chart.reference.beyond_horizon)
         coarse = chart.points[chart.points["method"] == "local_global"][0]
         self.assertLess(coarse["error_energy_max"], 0.5)
-        self.assertEqual(chart.best(0.5).method, "blanes_moan6")
+        self.assertEqual({chart.best(x).method for x in (0.5, 1e-3)}, {"blanes_moan6"})
         self.assertEqual(chart.record["judged_by"], "energy")
 
     def test_a_chart_is_its_points(self):

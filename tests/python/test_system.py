@@ -70,12 +70,12 @@ class OwnForces(unittest.TestCase):
             cases["numba"] = force, potential
 
         q0, ones = np.array([1.0, -0.5, 0.25]), np.ones(3)
-        run = dict(rtol=1e-9, q0=q0, until=20.0)
+        run = dict(rtol=1e-10, q0=q0, until=20.0)
         duffing = qddot.System(ones, problems.duffing_force, problems.duffing_potential)
         expected = qddot.solve(duffing, "dprkn8", **run)
         # q'^2/2 + V(q) all the way.
         energy = problems.duffing_potential(q0)
-        self.assertAlmostEqual(expected.energy.total[-1], energy, delta=1e-7)
+        self.assertAlmostEqual(expected.energy.total[-1], energy, delta=1e-8)
         for name, (f, v) in cases.items():
             with self.subTest(name):
                 solution = qddot.solve(qddot.System(ones, f, v), "dprkn8", **run)

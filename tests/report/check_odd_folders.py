@@ -107,6 +107,10 @@ class Points(Folder):
         for text in ("", "[]", odd, "[" * 9999):
             (self.folder / "points.json").write_text(text)
             self.assertEqual(self.packed().data["command"], [])
+        for odd in ('{"command_line": 5}', '{"libraries": 5}', '{"study": {"options": 5}}'):
+            (self.folder / "points.json").write_text(odd)
+            status, said = pack(self.folder)
+            self.assertEqual((status, said.count("\n")), (2, 1))
 
     def test_a_broken_picture_is_a_note(self):
         (self.folder / "modes.png").write_bytes(b"\x89PNG\r\n\x1a\nnothing")

@@ -15,6 +15,7 @@ import emphasis
 import made_folder
 import motion_files
 import page
+import static_part
 from commands import RunCommands
 from packed_folder import Folder, elements
 from record import read_record
@@ -126,6 +127,8 @@ class Contents(Folder):
         empty = answers.answer(row | {"why_empty": "no method reached it"})
         self.assertEqual((empty["next"], empty["why"]), (None, "no method reached it"))
         self.assertIsNone(answers.answers_note([empty]))
+        found = [static_part.how_long(ratio) for ratio in (1.0, 1.004, 1.04)]
+        self.assertEqual(found, ["just as long", "just as long", "1.04 × as long"])
 
 
 class Motions(Folder):
@@ -316,7 +319,9 @@ class RealStudy(unittest.TestCase):
         words += " --point-limit 0.02 --out own"
         made = Study(words)
         study = read_study(made / "own")
-        self.assertEqual([row["accuracy"] for row in answers.answers(study)], [0.03])
+        (answer,), (row,) = answers.answers(study), made.table("own/front.csv")
+        self.assertEqual((answer["accuracy"], row["accuracy"]), (0.03, 0.03))
+        self.assertEqual(study.runs[answer["point"]].method, row["method"])
         failed = {run.outcome for run in study.runs} - {"reached_end"}
         self.assertEqual(failed, set(study.sidecar["outcomes"]))
         self.assertEqual({run.method for run in study.runs}, set(study.method_notes))
