@@ -39,10 +39,9 @@ class New(unittest.TestCase):
     def test_one_that_says_too_little_is_refused(self):
         without = FORMULA.replace("//   q'", "// q'")
         for text, source, words in (
-            ("", "a book", "no file defines it"),
-            (without, "a book", "no formula"),
+            ("", "a book", "no file defines it"), (without, "a book", "no formula"),
             (FORMULA, "", ""),
-        ):
+        ):  # fmt: skip
             self.entry["source"] = source
             with self.with_source(text), self.assertRaisesRegex(page_data.BadPage, words):
                 page_of(self.entry)

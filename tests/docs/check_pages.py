@@ -192,12 +192,11 @@ class Words(unittest.TestCase):
 
     def test_what_is_not_there_is_an_error(self):
         for call in (
-            lambda: page_data.record("nothing"),
-            lambda: page_data.rows("methods", "nothing.csv"),
+            lambda: page_data.record("nothing"), lambda: page_data.rows("methods", "nothing.csv"),
             lambda: page_data.rows("methods", "methods.csv", nothing=1),
             lambda: page_data.row("methods", "methods.csv", family="sundials"),
             lambda: page_data.sample("README.md", "a line that nobody wrote " * 2),
-        ):
+        ):  # fmt: skip
             with self.assertRaises(page_data.BadPage):
                 call()
 

@@ -67,11 +67,10 @@ def random_scene(random):
         text = text.replace(mesh[0], f"file = {quoted(random.choice(paths))}")
     text = varied(random, text, random.choice([0, 0, 0, 0.01, 0.1]))
     for line, chance in [
-        (f"until = {random.uniform(1e-3, 2e-2):.5f}\n", 1),
-        ("stiff_above = 300\n", 0.2),
+        (f"until = {random.uniform(1e-3, 2e-2):.5f}\n", 1), ("stiff_above = 300\n", 0.2),
         ('start = "equilibrium"\n', 0.1),
         (f"name = {quoted(random.choice(HOSTILE_NAMES))}\n", 0.25),
-    ]:
+    ]:  # fmt: skip
         if random.random() < chance:
             key = line.split("=")[0]
             text = line + re.sub(rf"(?m)^{key}=.*\n", "", text)

@@ -115,14 +115,13 @@ class Prominent(unittest.TestCase):
     def test_the_front_and_then_the_best_of_each_kind(self):
         runs = [
             *(a_run(f"slow{i}", error=5e-2, time=100 + i) for i in range(20)),
-            a_run("fine", error=1e-8, time=2),
-            a_run("coarse", error=1e-3, time=1),
+            a_run("fine", error=1e-8, time=2), a_run("coarse", error=1e-3, time=1),
             a_run("solving", error=1e-3, time=40, solves=10),
             a_run("solving_slowly", error=1e-3, time=41, solves=10),
             a_run("bdf", error=1e-5, time=9, family="sundials", solves=10),
             a_run("erk", error=1e-7, time=8, family="sundials"),
             a_run("bdf_klu", error=1e-5, time=10, family="sundials", stock_of="bdf", solves=9),
-        ]
+        ]  # fmt: skip
         # The best of SUNDIALS comes before what solves linear systems in either family.
         expected = ["coarse", "fine", "erk", "bdf_klu", "solving", "bdf"]
         self.assertEqual(self.strong(runs), expected)
@@ -183,13 +182,10 @@ class Causes(unittest.TestCase):
             self.sweep("good", [None, None]),
         )
         expected = [
-            ("diverged", 2, "h ≥ 1e-2 (b) to 0.1 (a)"),
-            ("over budget", 1, "h ≤ 1e-4 (a)"),
+            ("diverged", 2, "h ≥ 1e-2 (b) to 0.1 (a)"), ("over budget", 1, "h ≤ 1e-4 (a)"),
             ("Newton failed", 1, "some rtol between"),
-        ]
+        ]  # fmt: skip
         self.assertEqual(found, expected)
-
-    def test_many_names_are_shortened(self):
         shorter = causes.shortening(["a", "b", "c"])[1:]
         self.assertEqual(shorter, ["a, b and 1 more", "a and 2 more"])
 
@@ -247,8 +243,7 @@ class Words(unittest.TestCase):
             [style.seconds(x) for x in (3, 5e-3, 2e-5, 4e-9, 1e-12, 0.99995)],
             ["3 s", "5 ms", "20 µs", "4 ns", "0.001 ns", "1 s"],
         )
-
-    def test_a_narrow_range_is_widened_about_its_middle(self):
+        # A narrow range is widened about its middle.
         low, high = style.widened(1.0, 2.0, 1)
         self.assertAlmostEqual(high / low, 10)
         self.assertAlmostEqual(low * high, 2.0)

@@ -232,11 +232,9 @@ class Changes(unittest.TestCase):
 
     def test_the_scene_is_what_both_names_begin_with(self):
         cases = {
-            ("cloth_nodes_30", "cloth_nodes_60"): "cloth",
-            ("cloth", "cloth_nodes_60"): "cloth",
-            ("cloth_8_a", "cloth_8_b"): "cloth_8",
-            ("soft", "stiff"): "soft to stiff",
-        }
+            ("cloth_nodes_30", "cloth_nodes_60"): "cloth", ("cloth", "cloth_nodes_60"): "cloth",
+            ("cloth_8_a", "cloth_8_b"): "cloth_8", ("soft", "stiff"): "soft to stiff",
+        }  # fmt: skip
         for scenes, words in cases.items():
             [sentence] = sentences([a_crossover(scenes=scenes)])
             self.assertEqual(sentence.split(", nodes: ")[0], words)

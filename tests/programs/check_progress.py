@@ -67,10 +67,9 @@ class Progress(Programs):
         study = f"work_precision {LONG} --out out"
         cloth = "simulate --scene cloth --method verlet --step-size 1e-5 --until 1e5"
         for line, fragment, words in (
-            (study, "1/", "--resume"),
-            (study + " --resume", "/", "kept from before"),
+            (study, "1/", "--resume"), (study + " --resume", "/", "kept from before"),
             (cloth, "t = ", ""),
-        ):
+        ):  # fmt: skip
             status, said, seen = in_terminal(line, fragment)
             self.assertEqual(status, 130)
             self.assertRegex(said, f"(?s)^{line.split()[0]}: .*interrupted by SIGINT")

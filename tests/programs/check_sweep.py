@@ -129,14 +129,10 @@ class Plans(Sweeps):
         own = self.task("chain", "verlet")
         others = {self.task("chain", "ida"), self.task("pendulum", "verlet")}
         for old, new, is_same in (
-            ("", "", True),
-            ('"ida"', '"ida", "rk4"', True),
-            ('"pendulum"', '"orbit"', True),
-            ("nodes = 6", "nodes = 7", False),
-            ("until = 0.05", "until = 0.06", False),
-            ("1e-4", "1e-5", False),
-            ("repeats = 1", "repeats = 2", False),
-        ):
+            ("", "", True), ('"ida"', '"ida", "rk4"', True), ('"pendulum"', '"orbit"', True),
+            ("nodes = 6", "nodes = 7", False), ("until = 0.05", "until = 0.06", False),
+            ("1e-4", "1e-5", False), ("repeats = 1", "repeats = 2", False),
+        ):  # fmt: skip
             os.makedirs("elsewhere", exist_ok=True)
             write("elsewhere/study.toml", SMALL.replace(old, new, 1))
             self.done("sweep plan elsewhere/study.toml --out S")

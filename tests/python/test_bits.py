@@ -10,18 +10,13 @@ from programs import Programs, run, sidecar
 
 # A method of each way to step: explicit, symplectic, Nystrom, multistep, implicit, SUNDIALS'.
 METHODS = {
-    "verlet": {"step_size": 1e-3},
-    "blanes_moan6": {"step_size": 2e-3},
-    "symmetric8": {"step_size": 1e-3},
-    "dprkn8": {"rtol": 1e-7},
-    "implicit_midpoint": {"step_size": 5e-3, "solve_tolerance": 1e-4},
-    "rodas4": {"rtol": 1e-4},
+    "verlet": {"step_size": 1e-3}, "blanes_moan6": {"step_size": 2e-3},
+    "symmetric8": {"step_size": 1e-3}, "dprkn8": {"rtol": 1e-7},
+    "implicit_midpoint": {"step_size": 5e-3, "solve_tolerance": 1e-4}, "rodas4": {"rtol": 1e-4},
     "generalized_alpha": {"step_size": 5e-3, "spectral_radius": 0.6},
-    "semi_implicit_euler": {"step_size": 1e-3},
-    "arkode_dirk4": {"rtol": 1e-5},
-    "cvode_bdf": {"rtol": 1e-6, "max_order": 3},
-    "ida": {"rtol": 1e-5, "atol": 1e-6},
-}
+    "semi_implicit_euler": {"step_size": 1e-3}, "arkode_dirk4": {"rtol": 1e-5},
+    "cvode_bdf": {"rtol": 1e-6, "max_order": 3}, "ida": {"rtol": 1e-5, "atol": 1e-6},
+}  # fmt: skip
 
 
 class Bits(Programs):
@@ -43,10 +38,9 @@ class Bits(Programs):
 
     def test_runs(self):
         for scene in (
-            random_scene(1),
-            random_scene(2, dimension=2),
+            random_scene(1), random_scene(2, dimension=2),
             qddot.scenes.lattice(nodes_x=3, nodes_y=3, nodes_z=4, stiffness=100.0),
-        ):
+        ):  # fmt: skip
             for method, options in METHODS.items():
                 with self.subTest(scene=scene.name, method=method):
                     knobs = [f"--{name.replace('_', '-')} {x}" for name, x in options.items()]

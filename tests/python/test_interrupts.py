@@ -216,10 +216,9 @@ qddot.solve(qddot.System([1.0], force, check=False), "verlet", step_size=1.0, un
 
     def test_the_interpreter_exits_while_threads_solve(self):
         for run in (
-            ENDLESS["run"],
-            ENDLESS["callable"],
+            ENDLESS["run"], ENDLESS["callable"],
             "[qddot.solve(cloth, 'verlet', step_size=1e-3, until=0.01) for _ in range(10**6)]",
-        ):
+        ):  # fmt: skip
             code = f"""
 threading.Thread(target=lambda: {run}, daemon=True).start()
 time.sleep(0.3)

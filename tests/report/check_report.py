@@ -89,12 +89,10 @@ class Contents(Folder):
         def change(content):
             content["command_line"][2] = "my scenes/it's.toml"
             content["study"]["options"] = {
-                "--methods": ["verlet", "ida"],
-                "--solver": ["cholmod"],
-                "--point-limit": ["0.5", "2"],
-                "--stability-detection": ["true"],
+                "--methods": ["verlet", "ida"], "--solver": ["cholmod"],
+                "--point-limit": ["0.5", "2"], "--stability-detection": ["true"],
                 "--no-reduce": ["mirror", "pins"],
-            }
+            }  # fmt: skip
             for note in content["methods"]:
                 note["takes"] = ["--solver"] if note["name"] == "ida" else []
 
@@ -326,10 +324,9 @@ class RealStudy(unittest.TestCase):
         self.assertEqual(failed, set(study.sidecar["outcomes"]))
         self.assertEqual({run.method for run in study.runs}, set(study.method_notes))
         for method, option in (
-            ("verlet", ""),
-            ("cvode_bdf", " --max-order 3"),
+            ("verlet", ""), ("cvode_bdf", " --max-order 3"),
             ("implicit_midpoint", " --solver cholmod"),
-        ):
+        ):  # fmt: skip
             run = next(r for r in study.runs if r.method == method and r.outcome == "reached_end")
             line = RunCommands(study).of_run(run.method, run.knob, run.value)
             self.assertIn(option, line)
