@@ -30,11 +30,9 @@ class New(unittest.TestCase):
     def test_it_gets_a_page(self):
         with self.with_source(FORMULA):
             page = page_of(self.entry)
-        self.assertIn("# `newest`", page)
-        self.assertIn("The newest method", page)
-        self.assertIn("```text\nq' = q + h v\n```", page)
-        self.assertIn("It is not measured yet.", page)
-        self.assertIn("../../integrators/methods/newest.cpp", page)
+        source = "../../integrators/methods/newest.cpp"
+        said = "The newest method", "```text\nq' = q + h v\n```", "It is not measured yet."
+        self.assertEqual([w for w in ("# `newest`", *said, source) if w not in page], [])
 
     def test_one_that_says_too_little_is_refused(self):
         without = FORMULA.replace("//   q'", "// q'")

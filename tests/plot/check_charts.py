@@ -2,11 +2,10 @@
 judges: the names of methods, the key, the strip of failures, and that --all shows every method."""
 
 import json
-import tempfile
-import unittest
 from pathlib import Path
 from xml.etree import ElementTree
 
+from programs import Programs
 from study_tables import draw, judge, texts_of, write_table
 
 COLUMNS = (
@@ -53,11 +52,12 @@ def write_study(folder, rows, columns=COLUMNS, reference=None, **about):
     judge(folder)
 
 
-class HandMade(unittest.TestCase):
+class HandMade(Programs):
     """Tests on tables in a folder of their own."""
 
     def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        super().setUp()
+        self.folder = Path.cwd()
 
 
 class Charts(HandMade):
@@ -77,9 +77,8 @@ class Charts(HandMade):
             texts = texts_of(self.folder / f"{name}.svg")
             self.assertLessEqual(set(PROMINENT), set(texts))
             self.assertFalse(set(texts).intersection(SLOWER))
-            self.assertIn("pale: 21 other methods (--all names them)", texts)
-            self.assertIn("its stock way, KLU", texts)
-            self.assertIn("25 of 25 methods; --all shows each", texts)
+            pale = "pale: 21 other methods (--all names them)"
+            self.holds(texts, pale, "its stock way, KLU", "25 of 25 methods; --all shows each")
             self.assertIn("h ≥ 0.1", texts)  # one limit for all
             said = "The study was interrupted by a signal: points are missing."
             self.assertIn(said, " ".join(texts))
@@ -103,14 +102,12 @@ class Charts(HandMade):
         self.assertFalse([text for text in texts if text.startswith("pale")])
         write_study(self.folder, a_sweep(EXPLICIT, 1e-6))
         texts, _ = self.chart()
-        self.assertIn("1 of 1 method; --all shows each", texts)
-        self.assertIn(f"h ≥ 0.1 ({EXPLICIT})", texts)
+        self.holds(texts, "1 of 1 method; --all shows each", f"h ≥ 0.1 ({EXPLICIT})")
 
     def test_failures_only(self):
         write_study(self.folder, [row for row in crowd() if row["outcome"] == "diverged"])
         texts, height = self.chart()
-        self.assertIn("no run gave a point", texts)
-        self.assertIn("no point at all", texts)
+        self.holds(texts, "no run gave a point", "no point at all")
         self.assertTrue([text for text in texts if text.startswith(EXPLICIT) and "more" in text])
         # Axes of 3.4 in with what is around them, and a strip of two lines.
         self.assertLess(height, 6.5)

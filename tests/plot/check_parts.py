@@ -261,7 +261,8 @@ class Words(unittest.TestCase):
         sweep = [1e-3, 1e-2, 1e-1, 1]
         for failed, words in (
             (sweep, "every h"), ([1e-1, 1], "h ≥ 0.1"), ([1e-3, 1e-2], "h ≤ 1e-2"),
-            ([1e-2], "h = 1e-2"), ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"), ([1e-3, 1e-1], "h = 1e-3, 0.1"),
+            ([1e-2], "h = 1e-2"), ([1e-2, 1e-1], "1e-2 ≤ h ≤ 0.1"),
+            ([1e-3, 1e-1], "h = 1e-3, 0.1"),
         ):  # fmt: skip
             self.assertEqual(failures.span_in_words(failed, sweep, "h"), words)
         self.assertEqual(failures.span_in_words([1e-3], [1e-3], "h"), "h = 1e-3")

@@ -135,10 +135,10 @@ class WhatIsSaid(Sweep):
         self.write_sweep(["a"], about={"times": "work", "processor": "Xeon"})
         (self.folder / "fastest.json").write_text(json.dumps({"interrupted": "a signal"}))
         words = " ".join(self.texts())
-        self.assertIn("its time as computed from its work", words)
-        self.assertIn("Times are computed, not measured", words)
-        self.assertIn("on one core of Xeon", words)
-        self.assertIn("The sweep was interrupted by a signal", words)
+        self.holds(
+            words, "its time as computed from its work", "Times are computed, not measured",
+            "on one core of Xeon", "The sweep was interrupted by a signal",
+        )  # fmt: skip
         files = [self.folder / f"fastest.{end}" for end in ("png", "svg")]
         first = [file.read_bytes() for file in files]
         draw_again("sweep/sweep.py", self.folder)

@@ -37,8 +37,8 @@ def judge(folder):
 
 
 def draw(script, *words):
-    """Runs a script that draws in a copy of this process, for which matplotlib need not be read again;
-    its exit status and what it says on stderr."""
+    """Runs a script that draws in a copy of this process, which has matplotlib; its exit status and
+    what it says on stderr."""
     import matplotlib.pyplot
 
     def work():

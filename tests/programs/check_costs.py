@@ -138,8 +138,8 @@ class Sizes(Programs):
         columns = "scene,method,phase,exponent,low,high,theory,nodes_from,nodes_to"
         for row in done.table("out/exponents.csv", columns):
             self.assertTrue(row["low"] <= row["exponent"] <= row["high"])
-        columns = "scene,nodes,springs,seconds,springs_per_second,bytes_per_spring,flops_per_spring,"
-        columns += "working_set_bytes,triad_bytes_per_second,peak_flops_per_second"
+        columns = "scene,nodes,springs,seconds,springs_per_second,bytes_per_spring,"
+        columns += "flops_per_spring,working_set_bytes,triad_bytes_per_second,peak_flops_per_second"
         rows = done.table("out/roofline.csv", columns)
         self.assertEqual(len(rows), 6)
         for row in rows:
@@ -178,7 +178,7 @@ class Ratios(Programs):
         self.assertEqual(sorted(os.listdir(out)), [*written.split(), "ratio_1", "ratio_10000"])
         columns = "stiffness_ratio,accuracy,{}method,time_s"
         rows = table(out + "/crossover.csv", columns.format("") + ",runner_up,margin")
-        cells = [(ratio, accuracy) for ratio in (1, 1e4) for accuracy in (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)]
+        cells = list(itertools.product((1, 1e4), (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)))
         self.assertEqual([(row["stiffness_ratio"], row["accuracy"]) for row in rows], cells)
         for row, asked in zip(rows, cells):
             good = sorted((p["time_s"], p["method"]) for p in self.good(*asked))

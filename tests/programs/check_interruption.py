@@ -58,7 +58,7 @@ class Interruption(Programs):
 
     def test_the_study_that_pages_show_goes_on(self):
         # Two million steps take longer than the limit on any machine.
-        line = "reversal --scene pendulum --until 1 --methods verlet,position_verlet --steps 1e-6 --out ."
+        line = "reversal --scene pendulum --until 1 --methods verlet,rk4 --steps 1e-6 --out ."
         self.complains(line + " --time-limit 0.02", 3, "interrupted by --time-limit")
         self.done(line + " --resume")
         self.assertEqual(len(table("reversal.csv")), 2)

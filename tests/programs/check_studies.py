@@ -215,8 +215,8 @@ class Rest(Programs):
         nodes, springs = [pin(0, 0), node(0, 0.9, mass=1)], [spring(0, 1, 100, rest_length=1)]
         write("upright.toml", scene(nodes, springs, gravity=[0, -10]))
         # It stands on a stiff spring: w^2 = -g/l to the rounding of k, 1e-15 of 1e11 / s^2.
-        nodes, springs = [pin(0, 0), node(0, 1, mass=0.01)], [spring(0, 1, 1e9, rest_length=1 + 1e-10)]
-        write("stands.toml", scene(nodes, springs, gravity=[0, -10]))
+        stiff = spring(0, 1, 1e9, rest_length=1 + 1e-10)
+        write("stands.toml", scene([pin(0, 0), node(0, 1, mass=0.01)], [stiff], gravity=[0, -10]))
         # The second mass on its spring of 0.001 N/m, whose other end gives way by 1e-12 of it.
         nodes = [pin(0), node(1, mass=1), node(2, mass=1)]
         write("soft.toml", scene(nodes, [spring(0, 1, 1e9), spring(1, 2, 0.001)]))
