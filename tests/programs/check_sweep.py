@@ -185,13 +185,16 @@ class Plans(Sweeps):
 class Tasks(Sweeps):
     def test_shards_measure_the_points_of_one_process_and_nothing_twice(self):
         self.sweep(measured="references")
-        self.done(POINTS + " --shard 2/2")
+        self.done(POINTS + " --shard 3/3")
         before = self.measured()
-        self.assertEqual(len(before), 6)
-        self.holds(self.done(POINTS + " --shard 1/2").stdout, "of 4 tasks are done")
+        for shard, said in ("1/3", "of 3 tasks are done"), ("2/3", "of 3 tasks are done"):
+            self.holds(self.done(f"{POINTS} --shard {shard}").stdout, said)
+        self.assertEqual((len(before), len(self.measured())), (4, 10))
         self.done(REFERENCES)
         self.assertEqual({name: self.measured()[name] for name in before}, before)
         self.check_as_one_process()
+        columns = "along,accuracy,low,high,crossing,scene_low,scene_high,method_low,method_high"
+        table("S/crossovers.csv", columns + ",margin")
         for scene in ("pendulum", "chain"):  # the accuracies that were asked for
             self.assertEqual(len(table(f"S/{scene}/front.csv")), 2)
         # The tables say how one process would make them: a study that --resume finds complete.
