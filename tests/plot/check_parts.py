@@ -232,17 +232,15 @@ class Words(unittest.TestCase):
     """Numbers and names as they are shown."""
 
     def test_numbers(self):
-        self.assertEqual(
-            [style.number(x) for x in (0.5, 0.1, 999, 1000, 2e-3, 3.34e-14, -2.5e6)],
-            ["0.5", "0.1", "999", "1e3", "2e-3", "3.3e-14", "-2.5e6"],
-        )
-        self.assertEqual(
-            [style.power_of_ten(x) for x in (1e-3, 1, 10, 1e5)], ["1e-3", "1", "10", "1e5"]
-        )
-        self.assertEqual(
-            [style.seconds(x) for x in (3, 5e-3, 2e-5, 4e-9, 1e-12, 0.99995)],
-            ["3 s", "5 ms", "20 µs", "4 ns", "0.001 ns", "1 s"],
-        )
+        numbers = (0.5, "0.5"), (0.1, "0.1"), (999, "999"), (1000, "1e3"), (2e-3, "2e-3")
+        numbers += (3.34e-14, "3.3e-14"), (-2.5e6, "-2.5e6")
+        powers = (1e-3, "1e-3"), (1, "1"), (10, "10"), (1e5, "1e5")
+        times = (3, "3 s"), (5e-3, "5 ms"), (2e-5, "20 µs"), (4e-9, "4 ns"), (1e-12, "0.001 ns")
+        for shown, pairs in (
+            (style.number, numbers), (style.power_of_ten, powers), (style.seconds, times)
+        ):  # fmt: skip
+            self.assertEqual([shown(x) for x, _ in pairs], [words for _, words in pairs])
+        self.assertEqual(style.seconds(0.99995), "1 s")
         # A narrow range is widened about its middle.
         low, high = style.widened(1.0, 2.0, 1)
         self.assertAlmostEqual(high / low, 10)

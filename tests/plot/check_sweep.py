@@ -147,9 +147,7 @@ class WhatIsSaid(Sweep):
         for file in files:
             file.unlink()
         self.write_sweep([], [a_cell("a", "1e-2")], about={"times": "guessed"})
-        self.assertEqual(
-            self.refusal(), "sweep.json: times is 'guessed', not measured or work."
-        )
+        self.assertEqual(self.refusal(), "sweep.json: times is 'guessed', not measured or work.")
 
     def test_chaotic_scenes_are_judged_by_their_energy(self):
         self.write_sweep(["a"], [a_cell("a", "1e-2", judge="energy")])

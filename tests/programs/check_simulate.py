@@ -106,9 +106,8 @@ class Tables(Programs):
     def test_every_table_has_a_sidecar_that_says_where_it_comes_from(self):
         outputs = "--final f.csv --trajectory g.csv --every 0.1 --energy e.dat --every 0.2"
         ended = self.verlet(outputs)
-        self.assertEqual(
-            sorted(os.listdir(".")), "e.dat e.dat.json f.csv f.json g.csv g.json".split()
-        )
+        written = "e.dat e.dat.json f.csv f.json g.csv g.json"
+        self.assertEqual(sorted(os.listdir(".")), written.split())
         for name in ("f.json", "g.json", "e.dat.json"):
             origin = sidecar(name)
             self.assertEqual(origin["command_line"], ended.args)

@@ -174,9 +174,8 @@ class Rest(Programs):
     def test_scenes_that_are_loose_or_never_rest(self):
         self.holds(self.done("equilibrium --scene pair").stdout, "not known to be isolated")
         write("falling.toml", scene([node(0, mass=1)], gravity=[-1]))
-        self.complains(
-            "equilibrium --scene falling.toml --final e.csv", 3, "no equilibrium", "falls for ever"
-        )
+        line = "equilibrium --scene falling.toml --final e.csv"
+        self.complains(line, 3, "no equilibrium", "falls for ever")
         origin = sidecar("e.json")
         self.assertEqual((origin["outcome"], origin["residual"]), ("unbounded", 1))
         self.done("modes --scene falling.toml --out out")

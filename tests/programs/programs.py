@@ -113,9 +113,8 @@ def run(line, **more):
 
 def started(line):
     """The process of a command line that goes on."""
-    return subprocess.Popen(
-        words_of(line), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    pipe = subprocess.PIPE
+    return subprocess.Popen(words_of(line), stdout=pipe, stderr=pipe, text=True)
 
 
 def wait(is_so):

@@ -231,9 +231,8 @@ class Odd(Page):
         self.browser.find(".answers .pick").click()
         self.browser.find(".answers .chosen .see-run").click()
         # Scrolling is smooth: it takes a while.
-        self.browser.wait(
-            "Math.abs(document.getElementById('run').getBoundingClientRect().top) < 100"
-        )
+        top = "document.getElementById('run').getBoundingClientRect().top"
+        self.browser.wait(f"Math.abs({top}) < 100")
 
     def test_without_webgl_or_scripts_something_stands_in_its_place(self):
         other = self.another_browser(flags=("--disable-gpu", "--disable-3d-apis"))

@@ -129,9 +129,8 @@ class Moving(Page):
             self.kept(condition),
         )
         self.show_next(condition)
-        self.browser.wait_for_words(
-            "#motion", "its numbers grow beyond what is kept from t = 250 ms on"
-        )
+        said = "its numbers grow beyond what is kept from t = 250 ms on"
+        self.browser.wait_for_words("#motion", said)
         self.browser.find(".player input[type=range]").send_keys(Keys.END)
         reference, run = self.browser.value(
             "[...document.querySelectorAll('.view')].map(one => one.style.background)"

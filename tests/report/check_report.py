@@ -194,9 +194,8 @@ class Motions(Folder):
         self.assertEqual(runs[0]["role"], "reference")
         self.assertEqual((runs[0]["times"][0], runs[0]["times"][-1]), (0, 0.5))
         self.assertTrue(1 < len(runs) < 15)
-        self.assertRegex(
-            " ".join(data["motion"]["notes"]), r"holds \d+ of the 15 motions .* files in motions/"
-        )
+        said = r"holds \d+ of the 15 motions .* files in motions/"
+        self.assertRegex(" ".join(data["motion"]["notes"]), said)
 
     def test_a_run_of_seconds_by_phase(self):
         made_folder.make_folder(self.folder, side=3, frames=4, runs=1)
