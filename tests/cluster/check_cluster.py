@@ -48,7 +48,7 @@ NODE = "node2"
 
 
 class Fault(Exception):
-    """What was found, in a sentence."""
+    """A finding, in a sentence."""
 
 
 def seconds_since(start):
@@ -57,7 +57,7 @@ def seconds_since(start):
 
 
 def said_by(argv):
-    """What a command prints; a Fault where it fails."""
+    """The output of a command; a Fault where it fails."""
     done = subprocess.run(argv, capture_output=True, text=True)
     if done.returncode != 0:
         said = done.stdout[-2000:] + done.stderr[-2000:]
@@ -82,7 +82,7 @@ def queue():
 
 
 def fields_of(job):
-    """What Slurm knows of a job or of each task of its array, by name."""
+    """The fields of a job in Slurm, or of each task of its array, by name."""
     said = said_by(["scontrol", "--oneliner", "show", "job", job])
     return [dict(re.findall(r"(\w+)=(\S*)", line)) for line in said.splitlines()]
 
@@ -128,7 +128,7 @@ def kill_a_node(script):
 
 
 def requeued(job, restarts):
-    """What Slurm knows of the job where it has been requeued, else None."""
+    """The fields of the job in Slurm where it has been requeued, else None."""
     fields = fields_of(job)[-1]
     return fields if int(fields["Restarts"]) > restarts else None
 

@@ -84,21 +84,22 @@ class Numbers(unittest.TestCase):
 
 
 class Runner(unittest.TestCase):
-    """What `./run studies` measures and keeps."""
+    """The studies that `./run studies` measures and keeps."""
 
     def test_a_study_is_kept_where_it_ends_well_and_due_where_it_is_another(self):
         folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         for name in ("DATA", "PICTURES", "RESULTS"):
             self.enterContext(mock.patch.object(entries, name, folder / name))
-        study = entries.Study("list", ["simulate --list-methods --csv"], text="m.csv")
+        command = "simulate --scene examples/two_links.toml --explain"
+        study = entries.Study("list", [command], text="m.csv")
         self.assertEqual("not measured", study.due())
         for sources, goes_on in ((entries.source_hash(), True), ("others", False)):
             begun = {"source_hash": sources, "commands": study.commands, "seconds": 100}
             entries.write_whole(study.folder / "begun.json", json.dumps(begun))
             studies.make(study, again=False)
             self.assertEqual((goes_on, ""), (study.record["seconds"] >= 100, study.due()))
-        study.needs = ["another"]
-        self.assertEqual("changed since: another", study.due())
+        with mock.patch.object(entries, "digest", lambda file: "another"):
+            self.assertEqual("changed since: examples/two_links.toml", study.due())
         study.commands = ["simulate --list-scenes --csv"]
         self.assertIn("measured by another command", study.due())
         bad = entries.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])

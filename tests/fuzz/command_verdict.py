@@ -1,4 +1,4 @@
-"""What is wrong with how a program took a command line: kinds of faults, each with its detail."""
+"""Faults in how a program took a command line: kinds of them, each with its detail."""
 
 import os
 import re

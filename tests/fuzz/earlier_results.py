@@ -40,7 +40,7 @@ def least_memory(program):
 
 
 def again(dice, program, options, sandbox):
-    """What the program is to be called with where its earlier results lie: arguments, what goes before
+    """The call of a program where its earlier results lie: arguments, what goes before
     the program, and what is scarce ("disk", "memory" or ""). One of the files may be spoiled."""
     write_scenes(sandbox.here)
     sandbox.inputs.update(SCENES)

@@ -107,7 +107,7 @@ class Campaign:
 
 
 class Report:
-    """What ran and what was found."""
+    """The runs and the findings."""
 
     def __init__(self, a):
         self.a, self.statuses, self.found = a, collections.defaultdict(collections.Counter), {}

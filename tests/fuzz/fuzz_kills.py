@@ -114,7 +114,7 @@ class Study:
             shutil.copy(path, to)
 
     def _disorder(self, status, results, before):
-        """What is wrong with what an interrupted run left."""
+        """Faults in what an interrupted run left."""
         if status != 130:
             yield f"interrupted: status {status}, 130 is documented"
         names = os.listdir(results) if os.path.isdir(results) else []

@@ -48,7 +48,7 @@ def _refuse(word):
 
 
 def json_of(path):
-    """What a JSON file holds; raises ValueError with what is wrong."""
+    """The content of a JSON file; raises ValueError with what is wrong."""
     return json.loads(Path(path).read_bytes().decode(), parse_constant=_refuse)
 
 

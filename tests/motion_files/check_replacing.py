@@ -1,4 +1,4 @@
-"""What files simulate may replace by a motion, and what is left where the disk is full."""
+"""Files that simulate may replace by a motion, and what is left where the disk is full."""
 
 import glob
 import os

@@ -26,7 +26,7 @@ def cells_of(root, kind):
 
 
 def check_layout(root, frames, nodes, cells):
-    """What VTKHDF 2.0 says of PolyData over time, with topology that is there once."""
+    """The layout of PolyData over time in VTKHDF 2.0, with topology that is there once."""
     assert root.attrs["Version"].tolist() == [2, 0]
     kind = root.attrs.get_id("Type").get_type()
     assert root.attrs["Type"] == b"PolyData"

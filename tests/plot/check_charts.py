@@ -61,7 +61,7 @@ class HandMade(Programs):
 
 
 class Charts(HandMade):
-    """What is to be read on a chart."""
+    """Texts that are to be read on a chart."""
 
     def chart(self, *options):
         """The texts of the chart, in the order of drawing, and its height in inches."""

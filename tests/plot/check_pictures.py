@@ -16,16 +16,12 @@ from study_tables import draw, draw_again, read_table, texts_of
 PICTURES = {
     "work_precision": (("chart", "chart_energy"), "points.csv"),
     "stability_map": (("stability_map", "stability_modes"), "limits.csv"),
-    "energy_drift": (("energy_drift",), "summary.csv"),
-    "exchange": (("exchange",), None),
-    "local_global": (("local_global",), None),
-    "scaling": (("scaling",), "scaling.csv"),
-    "crossover": (("crossover",), None),
-    "modes": (("modes",), None),
-    "symmetric_roots": (("symmetric_roots",), "roots.csv"),
-    "advice": (("advice",), None),
+    "energy_drift": (("energy_drift",), "summary.csv"), "exchange": (("exchange",), None),
+    "local_global": (("local_global",), None), "scaling": (("scaling",), "scaling.csv"),
+    "crossover": (("crossover",), None), "modes": (("modes",), None),
+    "symmetric_roots": (("symmetric_roots",), "roots.csv"), "advice": (("advice",), None),
     "bench": (("bench",), None),
-}
+}  # fmt: skip
 
 
 def ink(path):

@@ -75,7 +75,7 @@ class Sweep(HandMade):
 
 
 class WhatIsSaid(Sweep):
-    """What is to be read in a picture."""
+    """Texts that are to be read in a picture."""
 
     def test_the_fastest_method_its_time_and_its_margin(self):
         rows = [a_cell("chain_3", "1e-2", time_s="2.13e-3"), a_cell("chain_3", "1e-4", margin="")]

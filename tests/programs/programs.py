@@ -17,7 +17,7 @@ import tempfile
 import time
 import unittest
 
-# Where a shell has started this aside, SIGINT is ignored, and so it would be in all programs.
+# A shell ignores SIGINT for what it starts aside; programs would go on to ignore it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BIN = os.path.abspath(os.environ.get("QDDOT_BIN", "build/bin"))

@@ -1,4 +1,4 @@
-"""What a callable sees, keeps and raises."""
+"""Callables: what they see, keep and raise."""
 
 import gc
 import traceback

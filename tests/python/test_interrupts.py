@@ -58,7 +58,7 @@ assert signal.getsignal(signal.SIGINT) is handler_before
 
 
 def interrupted(text):
-    """What the script prints that gets Ctrl-C once it has worked for a while after it was ready, however
+    """The output of a script that gets Ctrl-C once it has worked for a while after it was ready, however
     busy the machine is."""
     with subprocess.Popen(
         [sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -179,7 +179,7 @@ class Threads(unittest.TestCase):
 
 
 def said_by(code):
-    """What a process prints that runs the code after BEGIN and ends well."""
+    """The output of a process that runs the code after BEGIN and ends well."""
     words = [sys.executable, "-c", BEGIN + code]
     done = subprocess.run(words, capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr

@@ -178,12 +178,9 @@ OF_OTHERS = {
     "reference: some unknowns have no mass": lambda: qddot.reference(qddot.Scene(**MASSLESS), 1.0),
 }
 TABLES = (
-    (scene, OF_SCENES),
-    (solve, OF_RUNS),
-    (system, OF_SYSTEMS),
-    (solve_own, OF_OWN_RUNS),
+    (scene, OF_SCENES), (solve, OF_RUNS), (system, OF_SYSTEMS), (solve_own, OF_OWN_RUNS),
     (lambda call: call(), {sentence: {"call": call} for sentence, call in OF_OTHERS.items()}),
-)
+)  # fmt: skip
 
 
 class Refusals(unittest.TestCase):

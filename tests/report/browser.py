@@ -61,7 +61,7 @@ class Browser:
         self.wait("document.documentElement.dataset.drawn === 'yes'")
 
     def run(self, script, *arguments):
-        """What a script returns in the page."""
+        """The value that a script returns in the page."""
         return self.driver.execute_script(script, *arguments)
 
     def value(self, expression, *arguments):
@@ -91,7 +91,7 @@ class Browser:
         return self.value("document.querySelectorAll(arguments[0]).length", selector)
 
     def logs(self):
-        """What the console said, and the addresses that were asked for, since the last call."""
+        """The console's words, and the addresses that were asked for, since the last call."""
         said = [entry["message"] for entry in self.driver.get_log("browser")]
         events = [
             json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")

@@ -13,7 +13,7 @@ import encoding
 
 
 class Encoding(unittest.TestCase):
-    """What the pages of whole folders do not show: the format's ends."""
+    """The format's ends, which the pages of whole folders do not show."""
 
     def test_what_is_outside_is_moved_into_the_box_and_said(self):
         steps, left_box = encoding.quantised([[[0, 0, 0], [2, 2, 2]]], np.zeros(3), 2.0)

@@ -14,7 +14,7 @@ GOOD = "points.outcome[i] === 'reached_end' && points.error_position[i] < 1e-3"
 
 
 class Choosing(Page):
-    """What a reader does to find a run."""
+    """A reader's ways to find a run."""
 
     def setUp(self):
         self.load(self.made)

@@ -1,4 +1,4 @@
-"""What a page shows of motions, in a real browser; check_page.py runs these with its own."""
+"""Motions on a page, in a real browser; check_page.py runs these with its own."""
 
 from selenium.webdriver.common.keys import Keys
 

@@ -29,7 +29,7 @@ SLOW = (
 
 
 class Contents(Folder):
-    """What is in the page of a whole folder."""
+    """The content of a whole folder's page."""
 
     def test_the_points_and_methods_come_through(self):
         result = self.make(side=3, frames=4, runs=2, scene="a </title> b")
@@ -254,7 +254,7 @@ class BeyondTheHorizon(Folder):
 
 
 class WithoutScripts(Folder):
-    """What a reader sees where no scripts run."""
+    """The page where no scripts run."""
 
     def test_the_answers_and_the_chart_stand_there(self):
         made_folder.make_folder(self.folder, has_motions=False)

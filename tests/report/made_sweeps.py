@@ -81,7 +81,7 @@ def front(scene):
 
 
 def sidecar(scene, dimension, nodes, springs):
-    """What points.json says of the study."""
+    """The content of points.json."""
     command = ["build/bin/work_precision", "--scene", scene, "--out", f"results/{scene}"]
     outcomes = {"diverged": "the motion grew without bound: take a smaller step"}
     return {
@@ -108,7 +108,7 @@ def sidecar(scene, dimension, nodes, springs):
 
 
 def reference(scene, displacement):
-    """What reference.json says."""
+    """The content of reference.json."""
     return {
         "beyond_horizon": False, "certified_position": CERTIFIED, "certified_velocity": 3e-12,
         "certified_energy": 2e-13, "chaotic": False, "horizon": None, "lyapunov": 0.0,
