@@ -84,6 +84,8 @@ class Records(unittest.TestCase):
         self.assertEqual(view.front, [FrontPoint(1e-2, "ida_klu", 0.5)])
         self.assertEqual((view.ranked, view.staircase), ({1e-2: [run], 1e-3: []}, [run]))
         self.assertTrue(view.subtitle.endswith(" in the node's own part, 0.5 to 2 m"))
+        self.position["errors"] = [None]  # one that is not known
+        self.assertTrue(math.isnan(self.read().judged.runs[0].error))
 
     def test_a_refusal_names_file_line_and_cell(self):
         row = "s,verlet,hand-written,,step_size,{},reached_end,1\n"

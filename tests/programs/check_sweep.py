@@ -214,7 +214,7 @@ class Tasks(Sweeps):
         self.sweep(measured="")
         kills = 0
         for line in (REFERENCES, POINTS):
-            for seconds in (0.005 * 1.4**i for i in itertools.count()):
+            for seconds in (0.005 * 1.25**i for i in itertools.count()):
                 before = self.measured()
                 process = started(line)
                 time.sleep(seconds)
