@@ -65,8 +65,13 @@ constexpr OutcomeWords outcomes[] = {
      "stiffness_pattern() and stiffness(), or take an explicit method"},
     {"no_discrete_gradient",
      "the system computes no discrete gradient of its energy, which this method needs: take "
-     "another method"}};
-static_assert(std::size(outcomes) == static_cast<std::size_t>(Outcome::no_discrete_gradient) + 1);
+     "another method"},
+    {"unknown", ""}};  // any other number
+static_assert(std::size(outcomes) == static_cast<std::size_t>(Outcome::no_discrete_gradient) + 2);
+
+const OutcomeWords& words_of(Outcome outcome) {
+  return outcomes[std::min(static_cast<std::size_t>(outcome), std::size(outcomes) - 1)];
+}
 
 // Throws std::invalid_argument unless a run with these arguments is allowed. Numbers that are not
 // finite make the run fail instead.
@@ -102,10 +107,8 @@ void check_arguments(const System& system, const State& state, double t_end,
 
 }  // namespace
 
-std::string_view name(Outcome outcome) { return outcomes[static_cast<std::size_t>(outcome)].name; }
-std::string_view advice(Outcome outcome) {
-  return outcomes[static_cast<std::size_t>(outcome)].advice;
-}
+std::string_view name(Outcome outcome) { return words_of(outcome).name; }
+std::string_view advice(Outcome outcome) { return words_of(outcome).advice; }
 
 Counts& Counts::operator+=(const Counts& more) {
   steps += more.steps;
