@@ -246,6 +246,20 @@ BOOST_DATA_TEST_CASE(a_force_that_is_no_number_from_some_place_on_ends_the_run_b
   }
 }
 
+BOOST_DATA_TEST_CASE(a_motion_that_is_over_in_finite_time_ends_there, interpolating(), method) {
+  // q'' = 6 q^2 from q = 1, v = 2 is q = 1/(1 - t)^2, which is infinite at t = 1.
+  const auto system = make_mass_spring(Oscillator{.mass = 1}.problem().network);
+  Relay relay(*system);
+  relay.after_force = [](const ConstVec& q, MutableVec f) { f[0] = 6 * q[0] * q[0]; };
+  relay.after_stiffness = [](const Vec& q, SymmetricMatrix& k) { k.coeffRef(0, 0) = 12 * q[0]; };
+  const Run r = run(method, relay, {0, Vec{{1}}, Vec{{2}}}, 2, {.rtol = 1e-6});
+  BOOST_TEST(name(r.summary.outcome) != "reached_end");
+  BOOST_TEST(r.summary.message != "");
+  BOOST_TEST(is_finite(r.state));
+  // The tolerance of 1e-6, with which the end of the motion shifts.
+  BOOST_TEST(std::abs(r.state.t - 1) < 1e-4);
+}
+
 BOOST_DATA_TEST_CASE(tolerances_are_weighed_by_the_lengths_and_speeds_they_are_for, interpolating(),
                      method) {
   // The same motion 1024 times as small takes the same steps with scales as small. So it does with

@@ -31,7 +31,7 @@ Problem flight() {
 
 BOOST_DATA_TEST_CASE(what_is_observed_changes_no_run_of_fixed_steps, methods_of_fixed_steps(),
                      method) {
-  constexpr double h = 1. / 64, t_end = 0.993;
+  constexpr double h = 1. / 50, t_end = 0.993;
   const Problem p = problem_for(method);
   const Run alone = run(method, p, t_end, {.step_size = h});
   std::vector<double> seen;
@@ -44,7 +44,7 @@ BOOST_DATA_TEST_CASE(what_is_observed_changes_no_run_of_fixed_steps, methods_of_
   BOOST_TEST(watched.summary.counts.force_evaluations > alone.summary.counts.force_evaluations);
   BOOST_TEST(seen == observer.times, boost::test_tools::per_element());
   // To look at the ends of steps costs nothing.
-  Film film{{0.25, 0.5}};
+  Film film{{0.26, 0.5}};
   const Run at_ends = run(method, p, t_end, {.step_size = h}, film.observer());
   BOOST_TEST(same(at_ends.state, alone.state));
   BOOST_TEST(at_ends.summary.counts == alone.summary.counts);
@@ -100,6 +100,16 @@ BOOST_DATA_TEST_CASE(the_state_is_that_of_its_time_however_little_parts_it_from_
       BOOST_TEST(r.summary.counts.steps == (beside > 1e-6 ? 11 : 10));
     }
   }
+}
+
+BOOST_DATA_TEST_CASE(without_forces_every_method_flies_exactly, general_methods(), method) {
+  const Problem p{{.dimension = 3, .node_mass = Vec{{1, 3}}},
+                  {0, Vec::LinSpaced(6, -1, 1), Vec::LinSpaced(6, 2, -3)}};
+  const Run r = run(method, p, 1.03, options_of(method, 0.1, 1e-6));
+  BOOST_TEST(r.summary.message == "");
+  // Rounding of at most some hundred steps or stages.
+  BOOST_TEST(distance(r.state.v, p.initial.v) < 1e-13);
+  BOOST_TEST(distance(r.state.q, p.initial.q + 1.03 * p.initial.v) < 1e-13);
 }
 
 BOOST_DATA_TEST_CASE(a_state_between_steps_is_kept_where_the_next_step_fails,

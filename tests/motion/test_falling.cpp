@@ -76,6 +76,21 @@ BOOST_AUTO_TEST_CASE(what_rests_in_its_fall_has_no_unknowns) {
   BOOST_TEST(std::abs(reduced.potential(later) - v) < 100 * eps * std::abs(v));
 }
 
+BOOST_AUTO_TEST_CASE(the_motion_about_the_centre_of_mass_and_the_fall_are_the_drawn_motion) {
+  const ReducedScene reduced(trembling()),
+      drawn(trembling(), Reductions().without(Reduction::falling));
+  BOOST_TEST(!has(drawn, Reduction::falling));
+  BOOST_TEST(reduced.system().size() == 12);
+  for (const double t : {0.3, 2.0}) {
+    const State a = run(reduced, t), b = run(drawn, t);
+    // Thousands of steps' rounding of coordinates of up to 30 m, at 20 rad/s.
+    BOOST_TEST(farthest(reduced.expand(a), drawn.expand(b)) < 1e-10);
+    BOOST_TEST(std::abs(reduced.kinetic(a) - drawn.kinetic(b)) < 1e-8);
+    BOOST_TEST(std::abs(reduced.potential(a) - drawn.potential(b)) < 1e-8);
+    BOOST_TEST(std::abs(reduced.energy(a) - reduced.energy(reduced.initial())) < 1e-12);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_fall_hides_neither_lines_nor_mirrors) {
   Scene scene{.dimension = 3, .gravity = {1, -9, 2}};
   for (const double x : {-1., 0., 1.}) {
