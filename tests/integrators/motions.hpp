@@ -41,6 +41,9 @@ inline std::vector<KnownMotion> whole_motions() {
   return list;
 }
 
+inline KnownMotion linear() { return {"linear hammock", linear_hammock(2)}; }
+inline KnownMotion nonlinear() { return {"hammock", hammock(3)}; }
+
 // The hammock released from rest. Its springs along the row are `ratio` times stiffer, at their
 // drawn length, and named stiff; braces and anchors are soft.
 inline Problem railed_hammock(double ratio) {

@@ -90,8 +90,7 @@ inline double order_defect(const std::vector<NystromTree>& trees, const std::vec
 
 // The larger modulus of the eigenvalues t +- sqrt(t^2 - d), t half the trace and d the determinant.
 inline double spectral_radius(const Eigen::Matrix2d& matrix) {
-  const double t = (matrix(0, 0) + matrix(1, 1)) / 2;
-  const double d = matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(1, 0);
+  const double t = matrix.trace() / 2, d = matrix.determinant();
   return t * t < d ? std::sqrt(d) : std::abs(t) + std::sqrt(t * t - d);
 }
 

@@ -247,6 +247,21 @@ inline Network linear_chain(int n, double mass, double stiffness) {
   return network;
 }
 
+// A mass of 2 kg that hangs at rest from a pin by two springs with a massless node between. Both
+// pull by 30 N; two in series are one of 120 N/m and 1.7 m.
+inline Problem two_in_series(int dimension) {
+  const Vec down = dimension == 1   ? Vec{{1}}
+                   : dimension == 2 ? Vec{{0.6, 0.8}}
+                                    : Vec{{1 / 3., 2 / 3., 2 / 3.}};
+  Problem p{{.dimension = dimension, .gravity = 9.81 * in_space(down)}, {}};
+  p.network.node_mass = Vec{{0, 2}};
+  p.network.anchors = {{0, {0, 0, 0}, {200, 0.8}}};
+  p.network.links = {{0, 1, {300, 0.9}}};
+  p.initial = {0, Vec(2 * dimension), Vec::Zero(2 * dimension)};
+  p.initial.q << 0.95 * down, 1.95 * down;
+  return p;
+}
+
 // n masses in 2D at rest along x between pins at 0 and n + 1, on springs of this law; each is
 // beside(i) m off the row.
 inline Problem row_between_pins(int n, double mass, const SpringLaw& law,

@@ -18,9 +18,6 @@ const std::vector<WithTable<NystromPair>>& pairs() {
 
 std::vector<Method> interpolating() { return methods_with(Trait::interpolates); }
 
-KnownMotion linear() { return {"linear hammock", linear_hammock(2)}; }
-KnownMotion nonlinear() { return {"hammock", hammock(3)}; }
-
 // A step of the higher order of a pair, from its definition.
 State formula(const NystromPair& pair, const System& system, const State& start, double h) {
   State end{start.t + h, start.q + h * start.v, start.v};

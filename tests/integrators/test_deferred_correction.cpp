@@ -73,13 +73,12 @@ BOOST_AUTO_TEST_CASE(the_first_sweep_is_verlets_method) {
   DeferredCorrection first(7, 5);
   first.compute(q, v, g, h, 1, pull);
   for (Index j = 0; j < 7; ++j) {
-    const Vec before = q;
     v += h / 2 * g;
+    // Some ten operations are rounded in another order.
+    BOOST_TEST(distance(first.d(j), h * v) < 1e-14);
     q += h * v;
     pull(q, g);
     v += h / 2 * g;
-    // Some ten operations are rounded in another order.
-    BOOST_TEST(distance(first.d(j), q - before) < 1e-14);
     BOOST_TEST(distance(first.g(j + 1), g) < 1e-14);
   }
 }

@@ -23,7 +23,7 @@ Problem pushed(double omega, double v0 = 1) {
 }
 
 double growth(const Method& method, const Problem& p, double t_end, const Options& options) {
-  return run(method, *make_mass_spring(p.network), p.initial, t_end, options).summary.energy_growth;
+  return run(method, p, t_end, options).summary.energy_growth;
 }
 
 // The growth that a run reports, and the growth over its states at many times.

@@ -37,7 +37,7 @@ struct Column {
 constexpr double t_end = 1;  // s, of a period of 1.2 s
 constexpr double compressed = 0.35, in_tension = 1.1;
 
-// Errors reach a few tolerances in one period, or fifty with BDF (see the suite `accuracy`).
+// Errors reach a few tolerances in one period, or fifty with BDF (see the suite `order`).
 double largest_factor(const Method& method) { return method.varies_order() ? 200 : 20; }
 
 }  // namespace

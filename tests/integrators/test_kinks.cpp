@@ -47,7 +47,6 @@ BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
   std::mt19937 random(20);
   for (int trial = 0; trial < 20; ++trial) {
     const ThroughThePin exact = random_one(random);
-    const auto system = make_mass_spring(exact.problem().network);
     const double until = 5.3 * exact.pass();  // three jumps
     for (const char* method : {"dprkn6", "dprkn8", "dprkn12", "rodas4"}) {
       const bool is_low = method_named(method).order == 4;
@@ -55,16 +54,13 @@ BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
         if (is_low && rtol < 1e-8) continue;
         BOOST_TEST_CONTEXT(method << " at " << rtol << " in trial " << trial) {
           // States between steps are as accurate as the steps.
-          std::vector<State> seen;
-          const Observer observer{{0.97 * exact.pass(), 1.001 * exact.pass(), 3.5 * exact.pass()},
-                                  [&](const State& s) { seen.push_back(s); }};
+          Film film{{0.97 * exact.pass(), 1.001 * exact.pass(), 3.5 * exact.pass()}};
           const Options options{
               .rtol = rtol, .length = exact.x0, .speed = exact.x0 * std::sqrt(exact.k / exact.m)};
-          const Run r =
-              run(method_named(method), *system, exact.problem().initial, until, options, observer);
+          const Run r = run(method_named(method), exact.problem(), until, options, film.observer());
           BOOST_TEST(r.summary.message == "");
-          seen.push_back(r.state);
-          for (const State& s : seen) {
+          film.seen.push_back(r.state);
+          for (const State& s : film.seen) {
             // As on smooth motions of a few periods; and some 100 roundings of steps and times.
             const double most = is_low ? 1000 * rtol : 10 * rtol + 1e-13;
             BOOST_TEST(std::abs(s.q[0] - exact.position(s.t)) < most * exact.x0);
@@ -77,8 +73,7 @@ BOOST_AUTO_TEST_CASE(errors_follow_the_tolerance_through_jumps_of_the_force) {
 
 BOOST_AUTO_TEST_CASE(far_from_the_origin_where_a_length_stays_zero_for_many_roundings_it_goes_on) {
   const ThroughThePin exact{400, 1, 0.5, 1.75, 1e6};
-  const auto system = make_mass_spring(exact.problem().network);
-  const Run r = run(method_named("dprkn8"), *system, exact.problem().initial, 5.3 * exact.pass(),
+  const Run r = run(method_named("dprkn8"), exact.problem(), 5.3 * exact.pass(),
                     {.rtol = 1e-8, .length = 1, .speed = 30});
   BOOST_TEST(r.summary.message == "");
   // Positions are rounded by 1e-10 m at each of some hundred steps.

@@ -10,14 +10,11 @@ using namespace qddot;
 namespace {
 
 std::vector<Method> of_variable_order() {
-  std::vector<Method> list = methods_of(Knob::rtol);
-  std::erase_if(list, [](const Method& method) { return !method.varies_order(); });
-  return list;
+  return methods_where([](const Method& method) { return method.varies_order(); });
 }
 
 Counts counts_of(const Method& method, const Options& options) {
-  const Problem p = hammock(2);
-  const Run r = run(method, p, 2, options);
+  const Run r = run(method, hammock(2), 2, options);
   BOOST_REQUIRE(r.summary.message == "");
   return r.summary.counts;
 }

@@ -82,6 +82,12 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
       }
     }
   }
+  // No test asks its questions of nobody.
+  for (const auto& list :
+       {stock_methods(), methods_with(Option::iterations), methods_with(Option::compensated),
+        methods_with(Trait::interpolates), methods_with(Trait::accepts_massless)}) {
+    BOOST_TEST(!list.empty());
+  }
   BOOST_TEST(family_name(Family::hand_written) != family_name(Family::sundials));
   BOOST_TEST(knob_name(Knob::step_size) == "step_size");
   BOOST_TEST(knob_name(Knob::rtol) == "rtol");

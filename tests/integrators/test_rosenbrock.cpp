@@ -60,9 +60,6 @@ double amplification(const Plain& p, std::complex<double> z) {
   return std::abs(1.0 + z * p.b.cast<std::complex<double>>().cwiseProduct(k).sum());
 }
 
-KnownMotion linear() { return {"linear hammock", linear_hammock(2)}; }
-KnownMotion nonlinear() { return {"hammock", hammock(3)}; }
-
 // A step of the method in the form without transformation, with a dense 2n x 2n Jacobian.
 State step(const System& system, const State& start, double h) {
   const Plain p = plain(registered::rodas4_table());

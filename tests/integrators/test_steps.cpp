@@ -22,20 +22,15 @@ constexpr double h = 0.01;  // s; h w is up to about 0.3 in these networks
 // m/s, each with a relative error of 1e-16. A dense solve multiplies it by a condition below 100.
 constexpr double rounding = 1e-13;
 
-struct Scene5 {
-  std::unique_ptr<System> system;
-  State start;
-};
-
 // Five masses in each dimension, springs in tension and in compression, all alike or some stiff.
-std::vector<Scene5> networks() {
+std::vector<Problem> networks() {
   std::mt19937 random(5);
-  std::vector<Scene5> list;
+  std::vector<Problem> list;
   for (const int dimension : {1, 2, 3}) {
     for (const double stretch : {0.9, 1.2}) {
       const Problem p = random_network(random, dimension, 5, stretch);
-      list.push_back({make_mass_spring(p.network), p.initial});
-      list.push_back({make_mass_spring(with_split(p.network)), p.initial});
+      list.push_back(p);
+      list.push_back({with_split(p.network), p.initial});
     }
   }
   return list;
@@ -150,9 +145,8 @@ std::vector<Formula> formulas() {
 }
 
 // The method's own step.
-State step(const std::string& method, const Scene5& n) {
-  const Run r =
-      run(method_named(method), *n.system, n.start, h, {.step_size = h, .solve_tolerance = 1e-13});
+State step(const std::string& method, const Problem& p) {
+  const Run r = run(method_named(method), p, h, {.step_size = h, .solve_tolerance = 1e-13});
   BOOST_REQUIRE(r.summary.message == "");
   return r.state;
 }
@@ -241,11 +235,12 @@ Vec bdf2_by_hand(double hw, int steps, double last_part) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_method) {
-  const std::vector<Scene5> all = networks();
+  const std::vector<Problem> all = networks();
   for (const auto& [method, formula, most] : formulas()) {
     double largest = 0;
-    for (const Scene5& n : all) {
-      largest = std::max(largest, distance(step(method, n), formula(*n.system, n.start, h)));
+    for (const Problem& p : all) {
+      const State expected = formula(*make_mass_spring(p.network), p.initial, h);
+      largest = std::max(largest, distance(step(method, p), expected));
     }
     BOOST_TEST(largest < most, method << ": " << largest);
   }
@@ -254,12 +249,13 @@ BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_method) {
 BOOST_AUTO_TEST_CASE(a_step_solves_the_method_s_equations_and_no_others) {
   const std::array<std::pair<const char*, double (*)(const Ends&)>, 2> equations = {
       {{"discrete_gradient", discrete_gradient}, {"generalized_alpha", generalized_alpha}}};
-  for (const Scene5& n : networks()) {
+  for (const Problem& p : networks()) {
+    const auto system = make_mass_spring(p.network);
     for (const auto& [method, residual] : equations) {
-      const State end = step(method, n);
+      const State end = step(method, p);
       for (const auto& [other, its_residual] : equations) {
         BOOST_TEST_CONTEXT(method << " in the equations of " << other) {
-          const double left = its_residual({*n.system, n.start, end});
+          const double left = its_residual({*system, p.initial, end});
           BOOST_TEST((method == other ? left < 1e-12 : left > 1e-7));
         }
       }

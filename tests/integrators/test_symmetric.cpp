@@ -20,17 +20,14 @@ std::vector<Rational> whole(const std::vector<std::int64_t>& half, std::int64_t 
   return list;
 }
 
-Rational power(Rational x, int exponent) {
-  Rational result = 1;
-  for (int i = 0; i < exponent; ++i) result *= x;
-  return result;
-}
-
 // The defect of q = t^p in the formula, with h = 1 and t = 0 in the middle.
 Rational defect(const SymmetricFormula& formula, int p) {
   const auto rho = whole(formula.rho, formula.rho_denominator),
              beta = whole(formula.beta, formula.beta_denominator);
   const int middle = formula.steps / 2;
+  const auto power = [](int t, int exponent) {
+    return Rational(pow(boost::multiprecision::cpp_int(t), static_cast<unsigned>(exponent)));
+  };
   Rational sum = 0;
   for (int j = 0; j < std::ssize(rho); ++j) {
     sum += rho[static_cast<std::size_t>(j)] * power(j - middle, p);
