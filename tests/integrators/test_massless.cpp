@@ -243,13 +243,10 @@ BOOST_DATA_TEST_CASE(where_all_nodes_are_massless_all_are_at_rest_in_balance, ac
 BOOST_DATA_TEST_CASE(a_massless_node_whose_forces_balance_nowhere_is_refused, accepting(Knob::rtol),
                      method) {
   // f = -1 - q^2 has no root, and 1 N on a node without springs is not balanced anywhere.
-  const Problem p = [] {
-    Problem of_two = Oscillator().problem();
-    of_two.network.node_mass = Vec{{1, 0}};
-    of_two.network.load = Vec{{0, 1}};
-    of_two.initial = {0, Vec::Ones(2), Vec::Zero(2)};
-    return of_two;
-  }();
+  Problem p = Oscillator().problem();
+  p.network.node_mass = Vec{{1, 0}};
+  p.network.load = Vec{{0, 1}};
+  p.initial = {0, Vec::Ones(2), Vec::Zero(2)};
   const auto unbound = make_mass_spring(p.network);
   Problem bound = p;
   bound.network.anchors.push_back({1, {0, 0, 0}, {1}});

@@ -281,6 +281,20 @@ BOOST_AUTO_TEST_CASE(steps_on_the_oscillator_are_those_of_the_formula_at_any_len
   }
 }
 
+BOOST_AUTO_TEST_CASE(implicit_and_semi_implicit_euler_damp_by_their_factor_at_any_length) {
+  for (const char* method : {"implicit_euler", "semi_implicit_euler"}) {
+    for (const double hw : any_hw) {
+      const auto amplitude = [&](int steps) {
+        const Vec end = run_oscillator(method, hw, steps);
+        return std::hypot(hw * end[0], end[1]);
+      };
+      const double factor = std::pow(amplitude(50) / amplitude(0), 1. / 50);
+      // A step cancels all but 1/(h w) of the amplitude, and with it as many digits.
+      BOOST_TEST(std::abs(factor * std::hypot(1, hw) - 1) < 1e-15 * (1 + hw));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_alphas_are_their_equations_with_the_spectral_radius_asked_for) {
   for (const double asked : {0.0, 0.3, 0.5, 0.7, 0.8, 1.0}) {
     const double least = std::max(asked, 0.5);  // of hht
