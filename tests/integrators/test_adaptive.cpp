@@ -53,8 +53,8 @@ double largest_error(const std::vector<State>& states, const KnownMotion& c) {
   return worst;
 }
 
-// Each of up to 17 products and sums of up to 12 levels rounds by 1.1e-16 of what is added up, and
-// so do coefficients of 16 digits.
+// Each of up to 17 products and sums of up to 12 levels rounds by 1.1e-16 of what is added up. So
+// do coefficients of 16 digits.
 constexpr double rounding = 2e-15;
 
 }  // namespace
@@ -98,8 +98,8 @@ BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_pair) {
 }
 
 BOOST_AUTO_TEST_CASE(forces_are_those_of_the_stages_and_nothing_else) {
-  // Forces: one at the start, one of an Euler step for the first step size, s - 1 stages of each
-  // attempt, and one at the end of a step unless that is the last stage.
+  // A run begins with one force, and with one more of an Euler step for the first step size. Each
+  // attempt takes s - 1 stages. A step whose end is not its last stage takes one there.
   const auto system = make_mass_spring(wall().network);
   for (const auto& [name, pair] : pairs()) {
     std::int64_t rejected = 0;

@@ -68,8 +68,8 @@ struct Spoiled {
   Spoil spoil = break_it;
 };
 
-// Each relay of the method's system, the forces and the stiffnesses that it is asked for, and the
-// first of them and a later one.
+// Checks each relay of the method's system, for forces and for stiffnesses. The first that it is
+// asked for is spoiled, or a later one.
 template <class Check>
 void for_all_spoiled(const Method& method, const Check& check) {
   const Problem p = problem_for(method);
@@ -89,9 +89,8 @@ void for_all_spoiled(const Method& method, const Check& check) {
   }
 }
 
-// The error of a state of a run that has ended early: none but for tolerances where steps are
-// chosen by what is left and iterations begin anew, and where a force at the end is to complete the
-// state.
+// The error of a state of a run that has ended early. It is that of tolerances where steps depend
+// on the time left, where iterations begin anew and where a force at the end completes the state.
 double allowed(const Method& method) {
   return method.knob == Knob::rtol || method.recurrence_roots ? 1e-2 : 1e-6;
 }

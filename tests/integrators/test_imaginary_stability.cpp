@@ -28,8 +28,8 @@ class Unbounded final : public Arkode {
                nullptr, nullptr, system) {}
 };
 
-// A method, its table, the limit of |R| = 1 in the literature where the table has as many stages as
-// the order, and the method without a bound.
+// A method and its table. The limit is that of |R| = 1 in the literature, for tables of as many
+// stages as the order. The last member makes the method without a bound.
 struct Named {
   const char* method;
   ARKODE_ERKTableID id;

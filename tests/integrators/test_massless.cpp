@@ -66,8 +66,8 @@ std::vector<Method> accepting(Knob knob) {
 }
 
 // The force on a massless node [N] that Newton's iteration of an adaptive method leaves. The place
-// between springs of 500 N/m has an error of a third of the tolerance, in the root mean square over
-// up to 12 entries of 2 m.
+// between springs of 500 N/m has an error of a third of the tolerance. That is the root mean square
+// over up to 12 entries of 2 m.
 double balance(double rtol) { return 500. / 3 * std::sqrt(12) * 3 * rtol; }
 
 // The hammock with its second node massless and all springs in tension; that node is drawn where

@@ -89,7 +89,8 @@ Orders observed_orders(const Method& method, const KnownMotion& motion) {
 
 // Few halvings fit between higher terms and rounding at high orders. A multistep method of order 8
 // or 10 is at rounding before its higher terms vanish, which make the slope steeper; its order
-// conditions are tested exactly elsewhere.
+// conditions are tested exactly elsewhere. Small steps inside a step come in whole numbers, which
+// bends the line of errors a little.
 bool is_of_order(const Method& method, const Orders& observed) {
   const bool is_high = method.recurrence_roots && method.order >= 8;
   const double most = method.order > 4 ? 0.25 : 0.1;
@@ -100,8 +101,8 @@ bool is_of_order(const Method& method, const Orders& observed) {
 }
 
 // The order p of a method that chooses its steps. If each step is as long as its error allows,
-// errors are proportional to steps^-p. p is the slope of the line through 13 runs, from the given
-// tolerance to a thousandth of it, as errors of single runs cancel by chance.
+// errors are proportional to steps^-p. Errors of single runs cancel by chance. So p is the slope of
+// the line through 13 runs, from the given tolerance to a thousandth of it.
 double order_by_tolerance(const Method& method, const KnownMotion& motion, double coarsest_rtol) {
   constexpr int runs = 13;
   Vec steps(runs), error(runs);

@@ -11,8 +11,9 @@ namespace {
 
 constexpr double omega = 10, h = 0.02, middle = 0.31;
 
-// A mass of 1 kg on a spring that must not be compressed, of rest length 1 m and stretched by 0.05
-// m by a load. x = 1.05 - a cos(w (t - middle)) has its lowest point in the middle of a step.
+// A mass of 1 kg on a spring that must not be compressed. Its rest length is 1 m, and a load
+// stretches it by 0.05 m. x = 1.05 - a cos(w (t - middle)) has its lowest point in the middle of a
+// step.
 Problem swing(double amplitude) {
   constexpr double k = omega * omega;
   Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {}};
@@ -44,8 +45,8 @@ double time_of_slack() {
 
 BOOST_DATA_TEST_CASE(compression_between_two_steps_is_seen_and_its_time_told,
                      methods_of(Knob::step_size), method) {
-  // The spring is shorter than at rest between steps, by a quarter of (h w)^2/8 of 0.05 m, and
-  // longer by about as much at their ends. An error of order 4, (h w)^4, is far below that.
+  // Between steps the spring is shorter than at rest, by a quarter of (h w)^2/8 of 0.05 m. At their
+  // ends it is longer by about as much. An error of order 4, (h w)^4, is far below that.
   const double excess = h * h * omega * omega / 16;
   const Problem p = swing(0.05 * (1 + excess));
   const auto system = make_mass_spring(p.network);

@@ -17,8 +17,8 @@ const std::vector<WithTable<Splitting>>& all() {
   return list;
 }
 
-// A splitting as a Nystrom method. Each kick is a stage at the time c_i of the drifts before it,
-// with a_ij = y_j (c_i - c_j), b_i = y_i (1 - c_i) and b'_i = y_i.
+// A splitting as a Nystrom method. Each kick y_i is a stage at the time c_i of the drifts before
+// it: a_ij = y_j (c_i - c_j), b_i = y_i (1 - c_i) and b'_i = y_i.
 NystromPair as_nystrom(const Splitting& splitting) {
   const auto& [order, kicks, drifts] = splitting;
   const std::size_t drifts_before = drifts.size() > kicks.size() ? 1 : 0;

@@ -18,8 +18,8 @@ using Eigen::MatrixXd;
 
 constexpr double h = 0.01;  // s; h w is up to about 0.3 in these networks
 
-// Rounding of one step. It has some 10 operations on q of 5 m, on v of 5 m/s and on h M^-1 f of 2
-// m/s, each with a relative error of 1e-16. A dense solve multiplies it by a condition below 100.
+// Rounding of one step. It has some 10 operations, each with a relative error of 1e-16. They are on
+// q of 5 m, v of 5 m/s and h M^-1 f of 2 m/s. A dense solve multiplies it by a condition below 100.
 constexpr double rounding = 1e-13;
 
 // Five masses in each dimension, springs in tension and in compression, all alike or some stiff.
