@@ -47,7 +47,8 @@ std::vector<Method> of_chosen_steps() {
 std::vector<int> step_counts(const Method& method) {
   std::vector<int> list;
   if (!method.recurrence_roots) {
-    const int first = method.asks(Need::split_forces) ? 20 : 6;
+    // Numbers of small steps inside are rounded up, by little at halvings of 1/5 s.
+    const int first = method.asks(Need::split_forces) ? 5 : 6;
     for (int steps = first; steps <= first << 12; steps *= 2) list.push_back(steps);
   } else {
     for (double steps = 6 * method.order; steps < 6 << 12; steps *= 1.15) {
