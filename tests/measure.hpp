@@ -79,7 +79,7 @@ inline bool is_linear_at(const System& system, const Vec& q) {
   return pieces ? pieces->is_linear_at(q) : system.stiffness_is_constant();
 }
 
-// f(q), K(q) and its material part by value.
+// f(q), K(q), its material part and the discrete gradient by value.
 inline Vec force_at(const System& system, const Vec& q) {
   Vec f(system.size());
   system.force(q, f);
@@ -94,6 +94,12 @@ inline SymmetricMatrix material_stiffness_at(const System& system, const Vec& q)
   SymmetricMatrix k = system.stiffness_pattern();
   offered<SplitStiffness>(system).material_stiffness(q, k);
   return k;
+}
+
+inline Vec mean_force_between(const System& system, const Vec& a, const Vec& b) {
+  Vec f(system.size());
+  offered<DiscreteGradient>(system).discrete_gradient(a, b, f);
+  return f;
 }
 
 // The least and the largest eigenvalue of a symmetric matrix; 0 if it is empty.

@@ -89,8 +89,9 @@ Bits inverse(Bits odd) {
   return x;
 }
 
-// The odd m in (0, 2^(bits - 1)) whose square is d mod 2^bits, for d = 1 mod 8, found bit by bit
-// from the lowest. The other three roots are the complements of it and of these to 2^(bits - 1).
+// The odd m in (0, 2^(bits - 1)) whose square is d mod 2^bits, for d = 1 mod 8. It is found bit by
+// bit from the lowest. The other three roots are the complements of it and of these to 2^(bits -
+// 1).
 Bits root_mod(Bits d, int bits) {
   Bits m = 1;
   for (int i = 3; i < bits; ++i) {

@@ -69,6 +69,7 @@ BOOST_AUTO_TEST_CASE(each_is_the_network_of_its_springs_alone_with_the_pattern_o
       BOOST_TEST(half.potential(q) == expected->potential(q));
       BOOST_TEST((force_at(half, q) == force_at(*expected, q)));
       BOOST_TEST((dense(stiffness_at(half, q)) == dense(stiffness_at(*expected, q))));
+      BOOST_TEST(half.stiffness_is_constant() == expected->stiffness_is_constant());
       BOOST_TEST(!split_of(half));
     }
     fewer += !same_pattern(*split_of(*whole)->stiff, *whole);

@@ -143,8 +143,8 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(tiny_lengths_give_finite_symmetric_results, Dimens
       const Block<D> b = spring_stiffness(stiff, d);
       BOOST_TEST(b.allFinite());
       BOOST_TEST(distance(b, b.transpose()) <= round_off * b.cwiseAbs().maxCoeff());
-      // |tau| = k l0 + c l0^3 = 46. Where the squares of the coordinates lie among the last few
-      // numbers above zero, a direction's length is off by sqrt(2.5) at most, not by more.
+      // |tau| = k l0 + c l0^3 = 46. The squares of the coordinates may lie among the last few
+      // numbers above zero. A direction's length is then off by sqrt(2.5) at most.
       BOOST_TEST(spring_force(stiff, d).norm() <= 46 * 1.6);
       BOOST_TEST(spring_energy(stiff, d) == 26.0);  // l is lost beside l0
     }

@@ -22,12 +22,6 @@ double size_of(const SpringLaw& law, double length) {
   return sum * (law.stiffness + law.quartic * sum * sum);
 }
 
-Vec mean_force(const System& system, const Vec& a, const Vec& b) {
-  Vec f(system.size());
-  offered<DiscreteGradient>(system).discrete_gradient(a, b, f);
-  return f;
-}
-
 // The entries that write(parts, K) writes.
 template <class Write>
 Vec entries(const System& system, const Write& write) {
@@ -62,7 +56,8 @@ void check_against_plain(const Network& network, const Vec& q) {
       sum_of_springs(network, [&](const SpringLaw& law) { return size_of(law, extent); });
   BOOST_TEST(distance(force_at(*plain, q), force_at(*fast, q)) < eps * size);
   const Vec other = q + 0.1 * Vec::LinSpaced(q.size(), 1, 9).array().sin().matrix();
-  BOOST_TEST(distance(mean_force(*plain, q, other), mean_force(*fast, q, other)) <= 2 * eps * size);
+  BOOST_TEST(distance(mean_force_between(*plain, q, other), mean_force_between(*fast, q, other)) <=
+             2 * eps * size);
 
   const double energy = sum_of_springs(network, [&](const SpringLaw& law) {
     return size_of(law, extent) * (extent + law.rest_length);
@@ -71,7 +66,7 @@ void check_against_plain(const Network& network, const Vec& q) {
              10 * eps * (energy + std::abs(network.constant_energy)));
 
   const double stiffest = sum_of_springs(network, [&](const SpringLaw& law) {
-    return law.stiffness + 3 * law.quartic * std::pow(extent + law.rest_length, 2);
+    return law.stiffness + 3 * law.quartic * std::pow(extent - 1 + law.rest_length, 2);
   });
   for (const double compression : {1.0, 0.3, 0.0}) {
     BOOST_TEST(distance(weighted(*plain, q, compression), weighted(*fast, q, compression)) <=
@@ -140,7 +135,7 @@ BOOST_AUTO_TEST_CASE(they_are_the_plain_sums_on_networks_of_all_kinds) {
       }
     }
   }
-  for_networks({1.4, 0.7, 1.4, 0.7, 1.4, 0.7}, check_against_plain);
+  for_networks({1.4, 0.7}, check_against_plain);
 }
 
 // Node by node: a node of a grid has eight springs of up to 100 N/m times 3 m, of ten roundings
@@ -203,6 +198,7 @@ BOOST_AUTO_TEST_CASE(slots_of_a_grid_are_of_one_shift_and_no_slot_is_wasted) {
     const double slots = static_cast<double>(slices.shifts.size()),
                  gathers = static_cast<double>(slices.gathers.size()) / lanes;
     const double least = 2.0 * static_cast<double>(network.links.size()) / lanes;
+    BOOST_TEST(slices.law_vectors == 2);  // no spring has a quartic part
     // Two of 64 nodes on each line have neighbours on one side only.
     BOOST_TEST(slots + gathers < 1.05 * least);
     BOOST_TEST((is_grid ? gathers : slots) < 0.05 * least);

@@ -20,9 +20,7 @@ struct Said {
   std::vector<MatrixXd> matrices;
 
   Said(const System& system, const Vec& q) : v(system.potential(q)) {
-    Vec mean(system.size());
-    offered<DiscreteGradient>(system).discrete_gradient(q, 1.1 * q, mean);
-    vectors = {force_at(system, q), mean};
+    vectors = {force_at(system, q), mean_force_between(system, q, 1.1 * q)};
     const auto& parts = offered<SplitStiffness>(system);
     const auto add = [&](const auto& write) {
       SymmetricMatrix k = system.stiffness_pattern();
@@ -102,6 +100,9 @@ BOOST_AUTO_TEST_CASE(blocks_follow_one_another) {
     v += own.v;
     mass.segment(at, n) = block->mass();
     entries += block->stiffness_pattern().nonZeros();
+    const SymmetricMatrix& pattern = whole.stiffness_pattern();
+    BOOST_TEST(
+        same_pattern(SymmetricMatrix(pattern.block(at, at, n, n)), block->stiffness_pattern()));
     for (std::size_t i = 0; i < own.vectors.size(); ++i)
       BOOST_TEST((said.vectors[i].segment(at, n) == own.vectors[i]));
     for (std::size_t i = 0; i < own.matrices.size(); ++i) {
@@ -122,9 +123,11 @@ BOOST_AUTO_TEST_CASE(blocks_follow_one_another) {
 
 BOOST_AUTO_TEST_CASE(stiffness_is_constant_where_it_is_in_every_system_within) {
   const Network constant = tied({.stiffness = 2}), varying = tied({2, 1});
+  BOOST_TEST(in_parts().stiffness_is_constant());
   BOOST_TEST(in_parts(constant, constant).stiffness_is_constant());
   BOOST_TEST(!in_parts(constant, varying).stiffness_is_constant());
   BOOST_TEST(!in_parts(varying, constant).stiffness_is_constant());
+  BOOST_TEST(!in_parts(varying, varying).stiffness_is_constant());
   BOOST_TEST(held(constant, {false}).stiffness_is_constant());
   BOOST_TEST(!held(varying, {true}).stiffness_is_constant());
 }
@@ -135,6 +138,7 @@ BOOST_AUTO_TEST_CASE(it_holds_where_every_system_within_holds) {
   BOOST_TEST(is_valid_at(system, Vec{{1.5, 0.1, 1.5}}));
   BOOST_TEST(!is_valid_at(system, Vec{{0.5, 3, 1.5}}));
   BOOST_TEST(!is_valid_at(system, Vec{{1.5, 3, 0.5}}));
+  BOOST_TEST(is_valid_at(in_parts(), Vec()));
   BOOST_TEST(is_valid_at(held(string, {false}), Vec{{1.5}}));
   BOOST_TEST(!is_valid_at(held(string, {true}), Vec{{0.5}}));
 }
