@@ -56,6 +56,13 @@ Problem random_network(std::mt19937& random, int dimension, int nodes, double st
   return p;
 }
 
+Network row_of_masses(int dimension, int n, double mass, const SpringLaw& law) {
+  Network row{.dimension = dimension, .node_mass = Vec::Constant(n, mass)};
+  for (int i = 0; i + 1 < n; ++i) row.links.push_back({i, i + 1, law});
+  row.anchors = {{0, {0, 0, 0}, law}, {n - 1, {n + 1.0, 0, 0}, law}};
+  return row;
+}
+
 Network with_split(Network network) {
   const auto name_stiff = [](auto& springs) {
     for (std::size_t e = 0; e < springs.size(); e += 2) springs[e].stiff = true;

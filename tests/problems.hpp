@@ -73,6 +73,15 @@ Eigen::Vector3d in_space(const Vec& x);
 // f stay moderate.
 Problem random_network(std::mt19937& random, int dimension, int nodes, double stretch);
 
+// n masses along x between two pins at 0 and n + 1, on n + 1 springs of one law.
+Network row_of_masses(int dimension, int n, double mass, const SpringLaw& law);
+
+// The same in 1D without rest lengths. Mode j = 1 ... n has the frequency
+// 2 sqrt(k/m) sin(j pi / (2 (n + 1))) and the shape sin(i j pi / (n + 1)), i = 1 ... n.
+inline Network linear_chain(int n, double mass, double stiffness) {
+  return row_of_masses(1, n, mass, {stiffness});
+}
+
 // The network with a split in which every other spring of each kind is stiff, the first one too.
 Network with_split(Network network);
 

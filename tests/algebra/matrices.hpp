@@ -49,7 +49,7 @@ inline double backward_error(const SymmetricMatrix& a, const Vec& x, const Vec& 
   const double norm = (a.cwiseAbs() * Vec::Ones(a.rows())).maxCoeff();
   return distance(a * x, b) / (norm * x.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
 }
-// That of a solve with factors of A.
+// The backward error of a solve with factors of A.
 template <class Factors>
 double backward_error(Factors& factors, const SymmetricMatrix& a) {
   const Vec b = Vec::LinSpaced(a.rows(), -1, 2);
@@ -61,7 +61,7 @@ double backward_error(Factors& factors, const SymmetricMatrix& a) {
 // n eps bounds the backward error where L and D do not grow; rounding errors of random sign add up
 // to its root.
 inline double tolerance_of(const SymmetricMatrix& a) {
-  return 10 * eps * std::sqrt(static_cast<double>(a.rows() + 1));
+  return 10 * eps * std::sqrt(static_cast<double>(std::max<Index>(a.rows(), 1)));
 }
 // LDL' without pivoting multiplies that by the growth of its entries, which a small pivot makes
 // large; this leaves room for a factor of 1e4.

@@ -45,6 +45,7 @@ std::vector<Case> cases(double stretch) {
   }
   all.push_back(scene_case("cloth", {{"nodes", 12}}, stretch));
   all.push_back(scene_case("lattice", {{"nodes_x", 9}, {"nodes_y", 5}, {"nodes_z", 5}}, stretch));
+  all.push_back({make_mass_spring({.dimension = 3}), Vec()});
   return all;
 }
 
@@ -59,10 +60,13 @@ const std::vector<Compressed>& compressed_cases() {
   static const std::vector<Compressed> all = [] {
     std::vector<Compressed> found;
     for (const Case& c : cases(0.6)) {
+      if (c.q.size() == 0) continue;
       const double lambda = -squared_frequencies(*c.system, c.q)[0];
       if (lambda > 0) found.push_back({c, lambda});
     }
     BOOST_TEST(found.size() >= 5u);
+    const auto is_large = [](const Compressed& c) { return c.at.system->size() > 400; };
+    BOOST_TEST(std::ranges::count_if(found, is_large) == 2);
     return found;
   }();
   return all;
@@ -74,20 +78,37 @@ BOOST_AUTO_TEST_CASE(compression_turns_the_matrix_indefinite_at_the_largest_eige
   for (const auto& [c, lambda] : compressed_cases()) {
     EffectiveMass solver(*c.system);
     // 1 % is far more than the eigenvalue's own error.
-    BOOST_TEST(solver.factorize(1, 0.99 / lambda, c.k()) == Definiteness::positive);
-    BOOST_TEST(solver.factorize(1, 1.01 / lambda, c.k()) == Definiteness::indefinite);
-    BOOST_TEST(solver.factorize_positive(1, 0.99 / lambda, c.k()));
-    BOOST_TEST(!solver.factorize_positive(1, 1.01 / lambda, c.k()));
+    for (const double s : {0.5, 0.99, 1.01, 2.3, 11.7}) {
+      BOOST_TEST(solver.factorize_positive(1, s / lambda, c.k()) == (s < 1));
+      BOOST_TEST(solver.factorize(1, s / lambda, c.k()) ==
+                 (s < 1 ? Definiteness::positive : Definiteness::indefinite));
+      const SymmetricMatrix a = c.effective(1, s / lambda);
+      const Vec values = Eigen::MatrixXd(a).selfadjointView<Eigen::Lower>().eigenvalues();
+      BOOST_TEST(solver.negative_pivots() == (values.array() < 0).count());
+      BOOST_TEST(backward_error(solver, a) < indefinite_tolerance);
+    }
   }
 }
 
-BOOST_AUTO_TEST_CASE(another_diagonal_takes_the_place_of_the_masses) {
+BOOST_AUTO_TEST_CASE(masses_or_another_diagonal_are_solved_with_to_round_off) {
   for (const Case& c : cases(1.2)) {
-    const Vec diagonal = Vec::LinSpaced(c.system->size(), 1, 3);
-    EffectiveMass solver(*c.system, diagonal);
-    BOOST_TEST(solver.factorize(2, 1e-2, c.k()) == Definiteness::positive);
-    const SymmetricMatrix a = whole(2 * diagonal, 1e-2, c.k());
-    BOOST_TEST(backward_error(solver, a) < tolerance_of(a));
+    const Index n = c.system->size();
+    const Vec other = Vec::LinSpaced(n, 1, 3), b = Vec::LinSpaced(n, 1, -3);
+    EffectiveMass with_masses(*c.system), with_other(*c.system, other);
+    for (auto [solver, diagonal] :
+         {std::pair(&with_masses, c.system->mass()), {&with_other, other}}) {
+      for (const double s : {0.0, 1e-6, 1e-4, 1e-2, 1e6}) {
+        Vec x(n), y(n);
+        BOOST_TEST(solver->factorize_positive(2, s, c.k()));
+        solver->solve(b, x);
+        BOOST_TEST(solver->factorize(2, s, c.k()) == Definiteness::positive);
+        solver->solve(b, y);
+        BOOST_TEST((x == y));  // the same operations
+        BOOST_TEST(solver->negative_pivots() == 0);
+        const SymmetricMatrix a = whole(2 * diagonal, s, c.k());
+        BOOST_TEST(backward_error(*solver, a) < tolerance_of(a));
+      }
+    }
   }
 }
 
@@ -143,7 +164,7 @@ BOOST_AUTO_TEST_CASE(factors_take_the_room_of_their_numbers) {
     for (const Case& c : cases(1.2)) {
       const Index n = c.system->size(), entries = c.system->stiffness_pattern().nonZeros();
       const EffectiveMass solver(*c.system, who);
-      // Besides the pivots, L has at least the entries of K's lower triangle and at most those of a
+      // L has the pivots, and at least the entries of K's lower triangle. It has at most those of a
       // square, filled up to strips of 8. An entry has 8 bytes, or 12 with its row's index.
       BOOST_TEST(solver.bytes() >= 8 * entries);
       BOOST_TEST(solver.bytes() <= 12 * (n + 16) * (n + 1));

@@ -31,9 +31,7 @@ void check_solve(const System& system, double s) {
 BOOST_AUTO_TEST_CASE(it_solves_on_networks_with_images_anchors_and_nodes_on_planes) {
   for_networks({1.4, 0.7}, [](const Network& network, const Vec&) {
     const auto system = make_mass_spring(network);
-    for (const double s : {0.0, 1e-4, 1e4}) {
-      check_solve(*system, s);
-    }
+    for (const double s : {0.0, 1e-4, 1e4}) check_solve(*system, s);
   });
 }
 

@@ -46,30 +46,13 @@ struct Row {
   double k = 3, m = 0.5;
 
   Case at_rest() const {
-    Network network{.dimension = 1, .node_mass = Vec::Constant(n, m)};
-    for (int i = 0; i + 1 < n; ++i) network.links.push_back({i, i + 1, {k, 1}});
-    network.anchors = {{0, {-1, 0, 0}, {k, 1}}, {n - 1, {double(n), 0, 0}, {k, 1}}};
-    return network_case(network, Vec::LinSpaced(n, 0, n - 1));
+    return network_case(row_of_masses(1, n, m, {k, 1}), Vec::LinSpaced(n, 1, n));
   }
   Vec squares() const {
     const Vec phases = Vec::LinSpaced(n, 1, n) * M_PI / (2 * (n + 1));
     return 4 * k / m * phases.array().sin().square();
   }
 };
-
-double orthonormality_error(const Case& c, const NaturalModes& modes) {
-  const Eigen::MatrixXd masses =
-      modes.shapes.transpose() * c.system->mass().asDiagonal() * modes.shapes;
-  return distance(masses, Eigen::MatrixXd::Identity(masses.rows(), masses.cols()));
-}
-
-// |-K x - w^2 M x| / |M^1/2| over all modes, in units of w^2: a backward error of w^2.
-double residual(const Case& c, const NaturalModes& modes) {
-  const Eigen::MatrixXd kx = c.k().selfadjointView<Eigen::Lower>() * modes.shapes;
-  const Eigen::MatrixXd r =
-      -kx - c.system->mass().asDiagonal() * modes.shapes * modes.squares.asDiagonal();
-  return r.cwiseAbs().maxCoeff() / std::sqrt(c.system->mass().maxCoeff());
-}
 
 // The error that any method may leave, relative to the largest w^2. Rounding sums up to about root
 // n of it. Lanczos stops at a residual of 1e-10 of the inverse, 1e-10 w^2 / (offset of the shift).
@@ -82,8 +65,13 @@ void check_ends(const Case& c, Index most, const Vec& all, double width) {
   const auto check = [&](const NaturalModes& modes, const Vec& expected) {
     BOOST_TEST_REQUIRE(modes.squares.size() == count);
     BOOST_TEST(std::is_sorted(modes.squares.begin(), modes.squares.end()));
-    BOOST_TEST(orthonormality_error(c, modes) < 1e-12);  // rounding of sums of n products
-    BOOST_TEST(residual(c, modes) <= vector_tolerance * width);
+    const Eigen::MatrixXd &x = modes.shapes, mx = c.system->mass().asDiagonal() * x;
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(count, count);
+    BOOST_TEST(distance(x.transpose() * mx, one) < 1e-12);  // rounding of sums of n products
+    // |-K x - w^2 M x| / |M^1/2|, in units of w^2: a backward error of w^2.
+    const Eigen::MatrixXd kx = c.k().selfadjointView<Eigen::Lower>() * x;
+    BOOST_TEST(distance(-kx, mx * modes.squares.asDiagonal()) <=
+               vector_tolerance * width * std::sqrt(c.system->mass().maxCoeff()));
     BOOST_TEST(distance(modes.squares, expected) <= value_tolerance * width);
   };
   check(lowest_modes(*c.system, c.q, most), all.head(count));
@@ -157,11 +145,9 @@ BOOST_AUTO_TEST_CASE(massless_nodes_follow_and_leave_the_finite_modes) {
   // are one of k.
   for (const int n : {5, 300}) {
     const Row row{n};
-    Network network{.dimension = 1, .node_mass = Vec::Zero(2 * n + 1)};
+    Network network = linear_chain(2 * n + 1, 0, 2 * row.k);
     for (int i = 0; i < n; ++i) network.node_mass[2 * i + 1] = row.m;
-    for (int i = 0; i < 2 * n; ++i) network.links.push_back({i, i + 1, {2 * row.k}});
-    network.anchors = {{0, {-1, 0, 0}, {2 * row.k}}, {2 * n, {2 * n + 1.0, 0, 0}, {2 * row.k}}};
-    const Case c = network_case(network, Vec::LinSpaced(2 * n + 1, 0, 2 * n));
+    const Case c = network_case(network, Vec::LinSpaced(2 * n + 1, 1, 2 * n + 1));
     BOOST_TEST(finite_modes(*c.system) == n);
     check_ends(c, 4, row.squares(), 4 * row.k / row.m);
   }
@@ -216,53 +202,41 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_just_below_the_true_one_and_the_bound)
     BOOST_TEST(found <= truth * (1 + 100 * eps));  // rounding of either
     BOOST_TEST(found >= truth * (1 - 1e-4));
     const double bound = frequency_bound(*c.system, c.q);
-    BOOST_TEST(bound >= truth * (1 - 100 * eps));  // equal in 1D, but for the eigensolver
+    BOOST_TEST(bound >= truth * (1 - 20 * eps));  // equal in 1D, but for the eigensolver
     if (c.stretched_in > 0) BOOST_TEST(bound <= truth * largest_ratio(c.stretched_in));
   }
 }
 
-BOOST_AUTO_TEST_CASE(largest_frequency_is_infinite_for_massless_nodes_and_zero_for_none) {
-  Network network{.dimension = 1, .node_mass = Vec{{0, 1}}, .links = {{0, 1, {4, 1}}}};
-  BOOST_TEST(std::isinf(largest_frequency(*make_mass_spring(network), Vec{{0, 1}})));
-  network.links[0].law.stiffness = 0;
-  BOOST_TEST(largest_frequency(*make_mass_spring(network), Vec{{0, 1}}) == 0);
-  BOOST_TEST(largest_frequency(*make_mass_spring({.dimension = 2}), Vec()) == 0);
-}
-
-BOOST_AUTO_TEST_CASE(bound_is_the_frequency_of_oscillator_and_equal_pair) {
+BOOST_AUTO_TEST_CASE(frequencies_of_one_and_two_masses_are_those_of_their_closed_forms) {
   const Oscillator o;
-  const auto [network, initial] = o.problem();
-  BOOST_TEST(std::abs(frequency_bound(*make_mass_spring(network), initial.q) - o.omega()) <
-             4 * eps * o.omega());
-  // Two free masses of 2 kg on 36 N/m: w^2 = k (1/m + 1/m) = 36, and a row of |K| sums up to 2 k.
-  const auto pair = make_mass_spring(
-      {.dimension = 1, .node_mass = Vec{{2, 2}}, .links = {{0, 1, {.stiffness = 36}}}});
-  BOOST_TEST(std::abs(frequency_bound(*pair, Vec{{0, 1}}) - 6) < 6 * 4 * eps);
-}
-
-BOOST_AUTO_TEST_CASE(bound_is_taken_where_it_is_asked_for) {
-  // w^2 = 3 c x^2 / m of a quartic spring without rest length and stiffness.
-  const auto system = make_mass_spring(
-      {.dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 3}}}});
-  BOOST_TEST(frequency_bound(*system, Vec::Constant(1, 0)) == 0);
-  BOOST_TEST(std::abs(frequency_bound(*system, Vec::Constant(1, 2)) - 6) < 6 * 4 * eps);
-}
-
-BOOST_AUTO_TEST_CASE(massless_node_makes_the_bound_infinite_only_with_stiffness) {
-  const auto bound = [](const SpringLaw& law) {
-    const auto system = make_mass_spring({.dimension = 1,
-                                          .node_mass = Vec{{0, 1, 1}},
-                                          .links = {{0, 1, law}, {1, 2, {.stiffness = 2}}}});
-    return frequency_bound(*system, Vec{{0, 1, 2}});
+  // A spring of l0 = k = 0 has w^2 = 3 c x^2 / m; two free masses of 2 kg on 36 N/m have w^2 =
+  // k (1/m + 1/m), and a row of |K| sums up to 2 k. A massless node makes w infinite, but only
+  // with stiffness. What neither moves nor pulls has none.
+  const Network quartic{
+      .dimension = 1, .node_mass = Vec::Ones(1), .anchors = {{0, {0, 0, 0}, {.quartic = 3}}}},
+      pair{.dimension = 1, .node_mass = Vec{{2, 2}}, .links = {{0, 1, {.stiffness = 36}}}};
+  const auto beside_massless = [](const SpringLaw& law) {
+    return Network{.dimension = 1,
+                   .node_mass = Vec{{0, 1, 1}},
+                   .links = {{0, 1, law}, {1, 2, {.stiffness = 2}}}};
   };
-  BOOST_TEST(std::isinf(bound({.stiffness = 1})));
-  BOOST_TEST(std::abs(bound({}) - 2) < 2 * 4 * eps);  // of the other two: w^2 = 2 k / m
-}
-
-BOOST_AUTO_TEST_CASE(bound_of_what_neither_moves_nor_pulls_is_zero) {
-  BOOST_TEST(frequency_bound(*make_mass_spring({.dimension = 3}), Vec()) == 0);
-  const auto free = make_mass_spring({.gravity = {0, 0, -9.81}, .node_mass = Vec::Ones(2)});
-  BOOST_TEST(frequency_bound(*free, Vec::LinSpaced(6, 0, 1)) == 0);
+  const struct {
+    Network network;
+    Vec q;
+    double w;
+  } cases[] = {{o.problem().network, o.problem().initial.q, o.omega()},
+               {pair, Vec{{0, 1}}, 6},
+               {quartic, Vec{{0.0}}, 0},
+               {quartic, Vec{{2.0}}, 6},
+               {beside_massless({.stiffness = 1}), Vec{{0, 1, 2}}, INFINITY},
+               {beside_massless({}), Vec{{0, 1, 2}}, 2},
+               {{.dimension = 3}, Vec(), 0},
+               {{.gravity = {0, 0, -9.81}, .node_mass = Vec::Ones(2)}, Vec::LinSpaced(6, 0, 1), 0}};
+  for (const auto& [network, q, w] : cases) {
+    const auto system = make_mass_spring(network);
+    for (const double found : {frequency_bound(*system, q), largest_frequency(*system, q)})
+      BOOST_TEST((found == w || std::abs(found - w) < 4 * eps * w), found << ", not " << w);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_is_computed_from_k_is_refused_where_there_is_none) {

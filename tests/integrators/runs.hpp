@@ -24,18 +24,23 @@ struct Run {
   std::string thrown{};  // what its system or observer threw; then there is no summary
 };
 
-// A run by a new integrator.
-inline Run run(const Method& method, const System& system, State state, double t_end,
-               const Options& options, const Observer& observer = {}, std::stop_token stop = {}) {
-  const auto integrator = make_integrator(method, system, options);
+inline Run run(Integrator& integrator, State state, double t_end, const Observer& observer = {},
+               std::stop_token stop = {}) {
   try {
-    Summary summary = integrator->advance(state, t_end, observer, std::move(stop));
+    Summary summary = integrator.advance(state, t_end, observer, std::move(stop));
     return {std::move(summary), std::move(state)};
   } catch (const std::runtime_error& error) {
     Summary summary;
     summary.t_reached = state.t;
     return {std::move(summary), std::move(state), error.what()};
   }
+}
+
+// A run by a new integrator.
+inline Run run(const Method& method, const System& system, State state, double t_end,
+               const Options& options, const Observer& observer = {}, std::stop_token stop = {}) {
+  const auto integrator = make_integrator(method, system, options);
+  return run(*integrator, std::move(state), t_end, observer, std::move(stop));
 }
 
 inline Run run(const Method& method, const Problem& p, double t_end, const Options& options,
@@ -237,16 +242,6 @@ inline Problem problem_for(const Method& method, int dimension = 2) {
   return p;
 }
 
-// n masses in 1D between two pins at 0 and n + 1, on n + 1 equal springs of zero rest length. Mode
-// j = 1 ... n has the frequency 2 sqrt(k/m) sin(j pi / (2 (n + 1))) and the shape sin(i j pi / (n +
-// 1)), i = 1 ... n.
-inline Network linear_chain(int n, double mass, double stiffness) {
-  Network network{.dimension = 1, .node_mass = Vec::Constant(n, mass)};
-  for (int i = 0; i + 1 < n; ++i) network.links.push_back({i, i + 1, {stiffness}});
-  network.anchors = {{0, {0, 0, 0}, {stiffness}}, {n - 1, {n + 1.0, 0, 0}, {stiffness}}};
-  return network;
-}
-
 // A mass of 2 kg that hangs at rest from a pin by two springs with a massless node between. Both
 // pull by 30 N; two in series are one of 120 N/m and 1.7 m.
 inline Problem two_in_series(int dimension) {
@@ -266,10 +261,7 @@ inline Problem two_in_series(int dimension) {
 // beside(i) m off the row.
 inline Problem row_between_pins(int n, double mass, const SpringLaw& law,
                                 const std::function<double(int)>& beside) {
-  Problem p{{.dimension = 2, .node_mass = Vec::Constant(n, mass)}, {}};
-  p.network.anchors = {{0, {0, 0, 0}, law}, {n - 1, {n + 1.0, 0, 0}, law}};
-  for (int i = 0; i + 1 < n; ++i) p.network.links.push_back({i, i + 1, law});
-  p.initial = {0, Vec(2 * n), Vec::Zero(2 * n)};
+  Problem p{row_of_masses(2, n, mass, law), {0, Vec(2 * n), Vec::Zero(2 * n)}};
   for (int i = 0; i < n; ++i) p.initial.q.segment<2>(2 * i) << i + 1, beside(i);
   return p;
 }
