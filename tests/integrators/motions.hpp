@@ -74,7 +74,7 @@ inline std::vector<KnownMotion> split_motions() {
   return list;
 }
 
-// Those that the method is made for.
+// The known motions that the method is made for.
 inline std::vector<const KnownMotion*> motions_of(const Method& method) {
   static const std::vector<KnownMotion> whole = whole_motions(), split = split_motions();
   const bool needs_split = method.asks(Need::split_forces);

@@ -24,19 +24,23 @@ inline Part part(const Problem& p) {
           {start_time, p.initial.q, p.initial.v}};
 }
 
-// The oscillator, whose force throws `words` where it has come to `below` [m] or less; it starts at
-// 0.8 m and is at -0.2 m after 0.2 s.
-inline Part giving_up(double below, const char* words) {
+// The oscillator, which starts at 0.8 m and is at -0.2 m after 0.2 s; `watch` sees its forces.
+inline Part watched_oscillator(const std::function<void(const ConstVec& q, MutableVec f)>& watch) {
   const Problem p = Oscillator().problem();
   const std::shared_ptr<System> oscillator = make_mass_spring(p.network);
-  const auto make = [oscillator, below, words] {
+  const auto make = [oscillator, watch] {
     auto relay = std::make_unique<Relay>(*oscillator);
-    relay->after_force = [below, words](const ConstVec& q, MutableVec) {
-      if (q[0] <= below) throw std::runtime_error(words);
-    };
+    relay->after_force = watch;
     return relay;
   };
   return {make, {start_time, p.initial.q, p.initial.v}};
+}
+
+// The same, whose force throws `words` where it has come to `below` [m] or less.
+inline Part giving_up(double below, const char* words) {
+  return watched_oscillator([=](const ConstVec& q, MutableVec) {
+    if (q[0] <= below) throw std::runtime_error(words);
+  });
 }
 
 // Parts as one system.

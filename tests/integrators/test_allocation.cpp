@@ -8,6 +8,7 @@
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "tests/integrators/scenes.hpp"
+#include "tests/scene/drawn.hpp"
 
 // Counts the allocations of the program and of its libraries. Operator new, Eigen, CHOLMOD, KLU and
 // SUNDIALS all call malloc and its siblings. These are defined here and call the C library's.
@@ -74,18 +75,10 @@ Course course(std::string name, const Scene& scene) {
   return {std::move(name), {reduced, &reduced->system()}, reduced->initial()};
 }
 
-Scene generated(const char* generator, const GeneratorValues& values) {
-  return generate(*find_generator(generator), values, generator);
-}
-
-// Springs at 0.7 of their rest length, which buckle.
-Course strut(std::string name) {
-  return course(std::move(name), generated("strut", {{"compression", 0.7}}));
-}
-
-// Steps so long that M - h^2 K is indefinite. Not every method gets over these.
+// Springs at 0.7 of their rest length, which buckle, in steps so long that M - h^2 K is indefinite.
+// Not every method gets over these.
 Course strut_in_long_steps() {
-  Course c = strut("strut in long steps");
+  Course c = course("strut in long steps", draw("strut", {{"compression", 0.7}}));
   c.hw = 4;
   c.rtol = 1e-2;
   return c;
@@ -102,7 +95,7 @@ Course stirred(Course c, double amplitude) {
 
 // More unknowns than what Eigen takes from the stack (16384 numbers), on springs of 0.1 mm.
 Course long_chain() {
-  Course c = course("long chain", generated("chain", {{"nodes", 9001}}));
+  Course c = course("long chain", draw("chain", {{"nodes", 9001}}));
   c.rtol = 1e-2;
   c.steps = 4;
   return stirred(std::move(c), 5e-6);
@@ -120,11 +113,11 @@ Course two_bodies() {
 std::vector<Course> courses() {
   return {course("hammock", hammock(3)),
           course("linear hammock", linear_hammock(3)),
-          course("chain", generated("chain", {{"nodes", 8}})),
-          course("cloth", generated("cloth", {{"nodes", 5}})),
-          stirred(course("framed cloth", generated("framed_cloth", {{"nodes", 5}})), 0.01),
+          course("chain", draw("chain", {{"nodes", 8}})),
+          course("cloth", draw("cloth", {{"nodes", 5}})),
+          stirred(course("framed cloth", draw("framed_cloth", {{"nodes", 5}})), 0.01),
           two_bodies(),
-          strut("strut"),
+          course("strut", draw("strut", {{"compression", 0.7}})),
           strut_in_long_steps(),
           long_chain()};
 }

@@ -1,5 +1,4 @@
 // Arguments that an integrator refuses in a sentence before it does anything.
-#include <limits>
 #include <stdexcept>
 
 #include <boost/test/unit_test.hpp>
@@ -13,8 +12,7 @@ using namespace qddot;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = NAN, infinity = INFINITY;
 
 // Whether the call throws std::invalid_argument with these words.
 template <class Call>

@@ -17,7 +17,7 @@ Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6
 using Spoil = void (*)(double& entry);
 void break_it(double&) { throw std::runtime_error("the spring broke"); }
 void lose_it(double& entry) { entry = NAN; }
-void overflow(double& entry) { entry = INFINITY; }
+void overflow(double& entry) { entry = std::numeric_limits<double>::infinity(); }
 
 // A hammock that the method applies to. The forces or stiffnesses of one of its relays are spoiled
 // from one of them on.
@@ -50,13 +50,7 @@ struct Spoiled {
     calls = 0;
     first_bad = first;
     spoil = how;
-    Run r{{}, problem.initial};
-    try {
-      r.summary = integrator->advance(r.state, until);
-    } catch (const std::runtime_error& error) {
-      r.thrown = error.what();
-    }
-    return r;
+    return tests::run(*integrator, problem.initial, until);
   }
 
   Problem problem;
@@ -89,18 +83,19 @@ void for_all_spoiled(const Method& method, const Check& check) {
   }
 }
 
-// The error of a state of a run that has ended early. It is that of tolerances where steps depend
-// on the time left, where iterations begin anew and where a force at the end completes the state.
+// The error of a state of a run that has ended early. Where a force at the end is missing to
+// complete the state, up to 1.8e-3 m/s is seen. Where steps are chosen by what is left, it is that
+// of some tolerances of 1e-6 after 4 s. Iterations begin anew, and leave their own tolerance.
 double allowed(const Method& method) {
-  return method.knob == Knob::rtol || method.recurrence_roots ? 1e-2 : 1e-6;
+  return method.recurrence_roots ? 2e-3 : method.knob == Knob::rtol ? 1e-3 : 1e-7;
 }
-void check_ended_early(const Method& method, const Spoiled& spoiled, const Run& r, bool in_matrix,
-                       int first_bad) {
+
+void check_ended_early(const Method& method, const Spoiled& spoiled, const Run& r, bool in_matrix) {
   BOOST_TEST(is_finite(r.state));
   BOOST_TEST(r.state.t < until);
-  if (!in_matrix) BOOST_TEST((r.state.t > 0) == (first_bad > 1));
+  BOOST_TEST((r.state.t > 0) == (spoiled.first_bad > 1));
   // The later force is that of half of the steps, or of a few less where a run begins with many.
-  if (!in_matrix && first_bad > 1 && method.knob == Knob::step_size)
+  if (!in_matrix && spoiled.first_bad > 1 && method.knob == Knob::step_size)
     BOOST_TEST(r.state.t > 0.4 * until);
   if (r.state.t == 0) {
     BOOST_TEST(same(r.state, spoiled.problem.initial));
@@ -115,9 +110,11 @@ void check_ended_early(const Method& method, const Spoiled& spoiled, const Run& 
 void check_runs_again(const Method& method, Spoiled& spoiled) {
   spoiled.first_bad = std::numeric_limits<int>::max();
   State again = spoiled.problem.initial;
-  BOOST_TEST(spoiled.integrator->advance(again, 1).message == "");
+  const Summary summary = spoiled.integrator->advance(again, 1);
   const Run fresh = run(method, *spoiled.system, spoiled.problem.initial, 1, options_for(method));
+  BOOST_TEST(summary.message == "");
   BOOST_TEST(same(again, fresh.state));
+  BOOST_TEST(summary.counts == fresh.summary.counts);
 }
 
 }  // namespace
@@ -127,7 +124,7 @@ BOOST_DATA_TEST_CASE(an_exception_in_the_system_comes_out_as_itself, methods(), 
     const Run r = spoiled.run(first_bad, break_it);
     BOOST_TEST(r.thrown == "the spring broke");
     BOOST_TEST(spoiled.calls == first_bad);  // nothing is asked for again
-    check_ended_early(method, spoiled, r, in_matrix, first_bad);
+    check_ended_early(method, spoiled, r, in_matrix);
     check_runs_again(method, spoiled);
   });
 }
@@ -142,12 +139,37 @@ BOOST_DATA_TEST_CASE(what_is_no_number_is_named, methods(), method) {
     // Library methods take it for a matrix that is of no use.
     BOOST_TEST((outcome == Outcome::not_finite || (in_matrix && outcome != Outcome::reached_end)),
                r.summary.message);
+    if (outcome == Outcome::not_finite) BOOST_TEST(r.summary.message.starts_with("a force "));
     BOOST_TEST(r.summary.message.find('\n') == std::string::npos);
     BOOST_TEST(r.summary.t_reached == r.state.t);
-    if (!in_matrix) BOOST_TEST(r.summary.message.starts_with("a force "), r.summary.message);
-    check_ended_early(method, spoiled, r, in_matrix, first_bad);
+    check_ended_early(method, spoiled, r, in_matrix);
     check_runs_again(method, spoiled);
   });
+}
+
+// The oscillator passes 0.2 m at about 0.2 s, and there is no force beyond.
+BOOST_DATA_TEST_CASE(where_a_force_becomes_no_number_a_run_ends_just_before,
+                     methods_of(Family::sundials), method) {
+  const Problem p = Oscillator().problem();
+  const auto system = make_mass_spring(p.network);
+  Relay relay(*system);
+  std::stop_source budget;  // 1e5 forces are thousands of times what it takes to get there
+  relay.after_force = [&, calls = 0](const ConstVec& q, MutableVec f) mutable {
+    if (q[0] < 0.2) f[0] = NAN;
+    if (++calls == 100000) budget.request_stop();
+  };
+  const Run r = run(method, relay, p.initial, 1, options_for(method), {}, budget.get_token());
+  BOOST_TEST(
+      (r.summary.outcome == Outcome::not_finite || r.summary.outcome == Outcome::step_too_small),
+      r.summary.message);
+  BOOST_TEST(is_finite(r.state));
+  BOOST_TEST(r.state.t == r.summary.t_reached);
+  BOOST_TEST(r.state.t > 0.15);
+  // The end of a step is a sum of rates, differences of solutions, and its last stage a solution:
+  // the same but for rounding.
+  BOOST_TEST(r.state.q[0] > 0.2 - 1e-14);
+  const State right = run(method, p, r.state.t, options_for(method)).state;
+  BOOST_TEST(distance(r.state, right) < allowed(method));
 }
 
 BOOST_DATA_TEST_CASE(a_run_can_be_stopped_between_two_steps, methods(), method) {
@@ -157,15 +179,15 @@ BOOST_DATA_TEST_CASE(a_run_can_be_stopped_between_two_steps, methods(), method) 
   Relay relay(*system);
   for (Relay* half : relay.all()) {
     half->after_force = [&, calls = 0](const ConstVec&, MutableVec) mutable {
-      if (++calls == 200) budget.request_stop();
+      if (++calls == 50) budget.request_stop();
     };
   }
   const Options options = options_for(method);
   const Run r = run(method, relay, p.initial, 100, options, {}, budget.get_token());
   BOOST_TEST(name(r.summary.outcome) == "over_budget");
   BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
-  BOOST_TEST((r.state.t > 0 && r.state.t < 5));
-  if (method.is(Trait::interpolates)) BOOST_TEST(r.summary.counts.force_evaluations < 220);
+  BOOST_TEST((r.state.t > 0 && r.state.t < 1));
+  if (method.is(Trait::interpolates)) BOOST_TEST(r.summary.counts.force_evaluations < 70);
   BOOST_TEST(r.summary.t_reached == r.state.t);
   const State right = run(method, *system, p.initial, r.state.t, options).state;
   BOOST_TEST(distance(r.state, right) < allowed(method));

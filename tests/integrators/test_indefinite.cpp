@@ -12,9 +12,9 @@ constexpr int masses = 5;
 constexpr double stiffness = 100;
 
 // A straight column of unit masses and springs along x, each 1/ratio times as long as its room of 1
-// m. It swings along itself in its slowest mode, which stays linear. It would buckle for ratios
-// below 1, at rates of up to 2 sqrt(k (1/ratio - 1)) = 27/s, but nothing pushes it off its line,
-// not even rounding. M - gamma^2 K is indefinite if gamma is above 1/27 s.
+// m. It swings along itself in its slowest mode, which stays linear. For ratios below 1 it would
+// buckle, at rates of up to 2 sqrt(k (1/ratio - 1)) = 27/s. But nothing pushes it off its line, not
+// even rounding. M - gamma^2 K is indefinite if gamma is above 1/27 s.
 struct Column {
   explicit Column(double ratio)
       : system(make_mass_spring(row_between_pins(masses, 1,

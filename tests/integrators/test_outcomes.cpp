@@ -1,5 +1,3 @@
-#include <limits>
-
 #include <boost/test/unit_test.hpp>
 
 #include "tests/integrators/runs.hpp"
@@ -10,11 +8,10 @@ using namespace qddot;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = NAN, infinity = INFINITY;
 
-// Conditions on any run: time and state are finite, both reported times are equal and not beyond
-// the end, the end is reached exactly if the outcome says so, and else there is a message.
+// Conditions on any run. Time and state are finite; both reported times are equal and not beyond
+// the end. The end is reached exactly if the outcome says so, and else there is a message.
 bool is_sound(const Run& r, double t_end) {
   const bool reached = r.summary.outcome == Outcome::reached_end;
   return is_finite(r.state) && r.state.t == r.summary.t_reached && r.state.t <= t_end &&

@@ -30,8 +30,8 @@ const State& reference() {
 Options fine(const Method& method) {
   return options_of(method, method.order == 1 ? 1e-4 : 1e-3, 1e-8);
 }
-// Vibrations of 17 rad/s and 0.05 m give relative errors of (h w) w t / 2 at order 1, and of (h
-// w)^2 w t / 12 at order 2.
+// Vibrations of 17 rad/s and 0.05 m give relative errors of (h w) w t / 2 at order 1. At order 2
+// they are (h w)^2 w t / 12.
 double allowed(const Method& method) { return method.order == 1 ? 2e-2 : 2e-3; }
 
 // Runs all methods, on one chain or several side by side: each ends at the reference, or is refused

@@ -133,36 +133,36 @@ BOOST_DATA_TEST_CASE(of_several_parts_that_fail_the_earliest_decides_in_any_orde
   } while (std::ranges::next_permutation(order).found);
 }
 
+BOOST_DATA_TEST_CASE(a_step_that_no_part_can_take_is_refused_for_all, methods_of(Knob::step_size),
+                     method) {
+  const Together together(parts_for(method));
+  const Run r = run(method, together, t_end, {.step_size = 1e-20});
+  BOOST_TEST(name(r.summary.outcome) == "step_too_small");
+  BOOST_TEST(r.summary.message == advice(Outcome::step_too_small));
+  BOOST_TEST(same(r.state, together.start));
+}
+
 BOOST_DATA_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together, methods(), method) {
   if (method.asks(Need::split_forces)) return;  // which the relay of the last straw has not
   for (std::size_t place = 0; place < 4; ++place) {
     BOOST_TEST_CONTEXT(method.name << ", place " << place) {
       std::stop_source budget;
-      const std::shared_ptr<System> oscillator = make_mass_spring(Oscillator().problem().network);
       // Asks to stop at a force well after the observer's time, whatever the steps.
-      double seen = 0;
-      const Part last_straw = {[&] {
-                                 auto relay = std::make_unique<Relay>(*oscillator);
-                                 relay->after_force = [&](const ConstVec& q, MutableVec) {
-                                   if (q[0] <= -0.2) budget.request_stop();
-                                 };
-                                 return relay;
-                               },
-                               part(Oscillator().problem()).start};
+      const Part last_straw = watched_oscillator([&](const ConstVec& q, MutableVec) {
+        if (q[0] <= -0.2) budget.request_stop();
+      });
       std::vector<Part> parts = parts_for(method);
       parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(place), last_straw);
       const Together together(parts);
-      State shown;
-      const Observer observer{{start_time + 0.05}, [&](const State& s) {
-                                shown = s;
-                                seen = s.t;
-                              }};
-      const Run r = run(method, together, t_end, options_for(method), observer, budget.get_token());
+      Film film{{start_time + 0.05}};
+      const Run r =
+          run(method, together, t_end, options_for(method), film.observer(), budget.get_token());
       BOOST_TEST(name(r.summary.outcome) == "over_budget");
       BOOST_TEST(r.summary.message == advice(Outcome::over_budget));
-      BOOST_TEST(seen == start_time + 0.05);
-      BOOST_TEST(r.summary.t_reached == seen);
-      BOOST_TEST(same(r.state, shown));
+      BOOST_TEST_REQUIRE(film.seen.size() == 1u);
+      BOOST_TEST(film.seen[0].t == start_time + 0.05);
+      BOOST_TEST(r.summary.t_reached == start_time + 0.05);
+      BOOST_TEST(same(r.state, film.seen[0]));
     }
   }
 }

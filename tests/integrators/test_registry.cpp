@@ -41,14 +41,11 @@ double symplectic_defect(const Method& method) {
 
 }  // namespace
 
-BOOST_DATA_TEST_CASE(names_are_lower_case, methods(), method) {
+BOOST_DATA_TEST_CASE(names_are_lower_case_and_every_method_says_in_one_line_what_and_whence_it_is,
+                     methods(), method) {
   BOOST_TEST(!method.name.empty());
   BOOST_TEST(method.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
              std::string::npos);
-}
-
-BOOST_DATA_TEST_CASE(every_method_says_what_it_is_in_one_line_and_where_it_is_from, methods(),
-                     method) {
   for (const std::string& text : {method.summary, method.source}) {
     BOOST_TEST(!text.empty());
     BOOST_TEST(text.find('\n') == std::string::npos);
@@ -113,9 +110,9 @@ BOOST_DATA_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_regist
   // The first steps of a multistep method are of another kind.
   if (method.recurrence_roots) return;
   const double defect = symplectic_defect(method);
-  // Differences with steps s = 1e-4 have errors of s^2 |third derivative|, about 1e-8. The
-  // defect of a method that is not symplectic is some (h w)^(order + 1), with h w = 1 here, or
-  // a thousandth of that at higher orders.
+  // Differences with steps s = 1e-4 have errors of s^2 |third derivative|, about 1e-8. Where a
+  // method is not symplectic, the defect is some (h w)^(order + 1), with h w = 1 here. At higher
+  // orders it is a thousandth of that.
   if (method.is(Trait::symplectic)) {
     BOOST_TEST(defect < 1e-6);
   } else {

@@ -158,8 +158,7 @@ struct Ends {
 };
 // v' = v + h M^-1 mean, q' = q + h (v + v')/2.
 double discrete_gradient(const Ends& e) {
-  Vec f(e.system.size());
-  offered<DiscreteGradient>(e.system).discrete_gradient(e.a.q, e.b.q, f);
+  const Vec f = mean_force_between(e.system, e.a.q, e.b.q);
   return std::max(distance(e.b.v, e.a.v + h * f.cwiseQuotient(e.system.mass())),
                   distance(e.b.q, e.a.q + h / 2 * (e.a.v + e.b.v)));
 }

@@ -29,8 +29,8 @@ BOOST_AUTO_TEST_CASE(a_coarser_tolerance_costs_no_more_steps_however_stiff_the_s
 BOOST_AUTO_TEST_CASE(our_counts_and_those_of_sundials_fit_together) {
   const Problem p = hammock(2);
   // ARKODE evaluates one force for each Newton iteration. It evaluates one more at an explicit
-  // stage, which begins the tables of order 3 and 5, and at the end of a step that is no stage
-  // (order 2). It evaluates none at the solutions of implicit stages, and IDA none besides
+  // stage, which begins the tables of order 3 and 5. So it does at the end of a step that is no
+  // stage (order 2). It evaluates none at the solutions of implicit stages, and IDA none besides
   // iterations. We count forces and stiffnesses, SUNDIALS steps, iterations and factorisations.
   const std::map<std::string, std::int64_t> forces_a_step = {{"arkode_dirk2", 1},
                                                              {"arkode_dirk3", 1},

@@ -14,8 +14,6 @@ namespace {
 
 using namespace qddot::sundials;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-
 // Lengths 2n below, at and above the 256 entries that sums are made in, odd multiples of what a
 // processor adds at once among them.
 constexpr Index halves[] = {1, 2, 3, 5, 127, 128, 129, 300, 511};
@@ -47,8 +45,8 @@ struct Vectors {
 constexpr int count = 8;
 using Operation = std::function<void(Vectors&)>;
 
-// The largest difference of an operation on our vectors and on SUNDIALS' own, of length 2n, in
-// roundings of the sum of the sizes of all terms.
+// The largest difference of an operation on our vectors and on SUNDIALS' own, of length 2n. It is
+// in roundings of the sum of the sizes of all terms.
 double roundings(Index n, const Operation& ours, const Operation& theirs) {
   Vectors a(make_vector, n, count), b(make_stock_vector, n, count);
   Vec size = Vec::Zero(2 * n);

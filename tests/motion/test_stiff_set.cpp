@@ -160,6 +160,18 @@ BOOST_AUTO_TEST_CASE(stiff_and_soft_are_together_the_whole_and_stiff_is_what_was
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_stiff_pattern_of_a_frame_has_no_more_than_its_border) {
+  const Scene scene = draw("framed_cloth", {{"nodes", 6}});
+  const auto entries = [&](const Reductions& reductions) {
+    const ReducedScene reduced(scene, reductions);
+    return split_of(reduced.system())->stiff->stiffness_pattern().nonZeros();
+  };
+  // Blocks of 6 entries for the diagonal, and of 9 for each border spring between free nodes. A
+  // half has 17 nodes; its spring across the mirror is a node's own.
+  BOOST_TEST(entries(Reductions().without(Reduction::mirror)) == 34 * 6 + 16 * 9);
+  BOOST_TEST(entries({}) == 17 * 6 + 7 * 9);
+}
+
 BOOST_AUTO_TEST_CASE(of_springs_that_become_one_the_one_is_stiff_if_any_is) {
   Scene scene{.dimension = 2};
   scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}, .velocity = {0, 1, 0}, .mass = 1}};

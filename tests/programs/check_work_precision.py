@@ -187,7 +187,8 @@ class Charts(Programs):
     def test_where_all_is_pinned_every_method_is_exact(self):
         name = 'a, "b"'
         springs = [spring(0, 1, 10, rest_length=0.5)]
-        write("s.toml", scene([pin(0, 0), pin(1, 0)], springs, name=name, until=0.5))
+        pins = [pin(0, 0, velocity=[1, 1]), pin(1, 0)]
+        write("s.toml", scene(pins, springs, name=name, until=0.5))
         self.done("work_precision --scene s.toml --point-limit 0.05 --repeats 1 --out out")
         rows = table("out/points.csv")
         self.assertGreater(len(rows), 60)
@@ -197,11 +198,12 @@ class Charts(Programs):
         self.assertEqual({row["scene"] for row in table("out/front.csv")}, {name})
         listed = {row["name"] for row in rows_of(run("simulate --list-methods --csv").stdout)}
         self.assertEqual({row["method"] for row in rows}, listed)
-        line = "simulate --scene s.toml --final f.csv --energy e.csv --every 0.25 --step-size 0.01"
-        self.done(line + " --method verlet")
-        self.assertEqual(read("f.csv"), "node,x,y,vx,vy\n0,0,0,0,0\n1,1,0,0,0\n")
-        for row in table("e.csv"):
-            self.assertEqual((row["kinetic"], row["total"]), (0, 1.25))
+        line = "simulate --scene s.toml --final f.csv --energy e.csv --every 0.25 --method "
+        for method in ("verlet --step-size 0.01", "bdf2 --step-size 0.01", "ida --rtol 1e-4"):
+            self.done(line + method)
+            self.assertEqual(read("f.csv"), "node,x,y,vx,vy\n0,0,0,0,0\n1,1,0,0,0\n")
+            for row in table("e.csv"):
+                self.assertEqual((row["kinetic"], row["total"]), (0, 1.25))
 
     def test_options_reach_the_runs(self):
         def rows(methods, more):
