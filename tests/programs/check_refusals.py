@@ -157,7 +157,7 @@ simulate --scene orbit --method hht --step-size 1e-3 --spectral-radius {-1,1.5} 
 simulate --scene orbit --method trapezoidal --step-size 1e-3 --spectral-radius 0.5 | --spectral-radius is not for trapezoidal | generalized_alpha
 simulate --scene orbit --method implicit_euler --step-size 1e-3 --solver {lu,klu} | --solver {} | one of automatic, multifrontal
 simulate --scene orbit --method ida_klu --rtol 1e-3 --solver cholmod | --solver is not for ida_klu | implicit_euler
-work_precision --scene orbit --methods ida --max-order 13 OUT | --max-order 13 | from 1 to
+work_precision --scene orbit --methods {ida,cvode_adams} --max-order 13 OUT | --max-order 13 | from 1 to
 work_precision --scene orbit --methods hht --spectral-radius 1.5 OUT | --spectral-radius 1.5 | from 0 to 1
 simulate --scene orbit --method exact --step-size 1 | orbit: exact | same everywhere | verlet
 simulate --scene orbit --method arkode_imex3 --rtol 1e-3 | orbit: stiff_above: | arkode_imex3 | above 0 | verlet | implicit_euler

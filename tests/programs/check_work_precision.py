@@ -206,16 +206,16 @@ class Charts(Programs):
                 self.assertEqual((row["kinetic"], row["total"]), (0, 1.25))
 
     def test_options_reach_the_runs(self):
-        def rows(methods, more):
+        def rows(methods, more, scene="orbit --until 0.5"):
             self.done(
-                f"work_precision --scene orbit --until 0.5 --methods {methods} --repeats 1"
+                f"work_precision --scene {scene} --methods {methods} --repeats 1"
                 f" --point-limit 100 --accuracies 1e-2,1e-3 {more} --out ."
             )
             return table("points.csv")
 
-        low = rows("ida,cvode_adams", "--max-order 5 --max-order 1")  # the last counts
-        self.assertEqual({row["order_mean"] for row in low}, {1})
-        own = rows("ida,verlet,trapezoidal", "")
+        low = rows("ida,cvode_bdf,cvode_adams", "--max-order 5 --max-order 1")  # the last counts
+        self.assertEqual({(row["order_mean"], row["order_reductions"]) for row in low}, {(1, 0)})
+        own = rows("ida,verlet,trapezoidal,arkode_dirk4,arkode_trbdf2", "")
         for row in own:
             is_adaptive = row["method"] == "ida"
             self.assertEqual(row["order_mean"] is not None, is_adaptive)
@@ -227,8 +227,17 @@ class Charts(Programs):
         )
         self.assertEqual(tight["steps"], loose["steps"])
         self.assertGreater(tight["newton_iterations"], loose["newton_iterations"])
-        damped, undamped = (rows("hht", f"--spectral-radius {part}")[3] for part in ("0.5", "1"))
-        self.assertGreater(damped["error_energy"], 2 * undamped["error_energy"])
+        damped, undamped = (
+            rows("generalized_alpha", f"--spectral-radius {part}")[5] for part in "01"
+        )
+        self.assertGreater(damped["error_energy"], 10 * undamped["error_energy"])
+        plain, detecting = (
+            {row["method"]: row["order_mean"] for row in rows(both, more, "fpu --until 20")
+             if row["value"] == 1e-5}
+            for both in ["cvode_bdf,cvode_adams"] for more in ("", "--stability-detection")
+        )  # fmt: skip
+        self.assertLess(detecting["cvode_bdf"], plain["cvode_bdf"])
+        self.assertEqual(detecting["cvode_adams"], plain["cvode_adams"])
 
     def test_steps_that_a_stiff_spring_holds_are_counted(self):
         # A slow vibration of two masses that a spring 1e6 times stiffer holds together.
