@@ -23,8 +23,8 @@ class DrawnMotion {
   double known_until() const { return known_until_; }
   bool is_known() const { return known_until_ == until(); }
 
-  // The larger of two errors at the end: the largest of a node's position over the largest
-  // displacement, and the largest of a node's velocity over the largest speed.
+  // The larger of two errors at the end. One is the largest of a node's position over the largest
+  // displacement, the other that of a velocity over the largest speed.
   double error(const std::vector<Node>& nodes) const;
   // The allowed error: a thousand times the effect of one rounding of the drawn positions and
   // velocities on the end. The roundings of some thousand steps have no larger effect.
@@ -47,9 +47,8 @@ struct Comparisons {
   Comparisons& operator+=(const Comparisons& more);
 };
 
-// Compares the energies and the force of the reduced scene with those of all drawn nodes in the
-// same state, at the start and near it. Sets of reductions are each alone, all but each, all and
-// none.
+// Compares energies and force of the reduced scene with those of all drawn nodes, at the start and
+// near it. The sets of reductions are each alone, all but each, all and none.
 Comparisons compare_states(const Scene& scene, std::uint64_t seed);
 
 // The motion with the same sets of reductions, by one method of high order.

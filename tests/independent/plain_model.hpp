@@ -57,12 +57,8 @@ class PlainModel {
     f.assign(x.size(), 0);
     for (const Spring& spring : scene_.springs) {
       const auto [i, j] = spring.nodes;
-      Real d[3], l2 = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        d[c] = x[3 * j + c] - x[3 * i + c];
-        l2 += d[c] * d[c];
-      }
-      const Real l = plain_root(l2);
+      Real d[3];
+      const Real l = plain_root(squared_length(spring, x, d));
       if (!(l > 0)) continue;
       const Real pull = tension(spring.law, l) / l;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -90,13 +86,8 @@ class PlainModel {
   Real energy(const Vector& x, const Vector& v) const {
     Real sum = 0;
     for (const Spring& spring : scene_.springs) {
-      const auto [i, j] = spring.nodes;
-      Real l2 = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Real d = x[3 * j + c] - x[3 * i + c];
-        l2 += d * d;
-      }
-      const Real s = plain_root(l2) - Real(spring.law.rest_length);
+      Real d[3];
+      const Real s = plain_root(squared_length(spring, x, d)) - Real(spring.law.rest_length);
       sum += s * s * (Real(spring.law.stiffness) / 2 + Real(spring.law.quartic) / 4 * s * s);
     }
     for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
@@ -115,6 +106,15 @@ class PlainModel {
   bool place_massless(Vector& x) const;
 
  private:
+  // d, from one end of the spring to the other, and its square.
+  static Real squared_length(const Spring& spring, const Vector& x, Real (&d)[3]) {
+    Real l2 = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      d[c] = x[3 * spring.nodes[1] + c] - x[3 * spring.nodes[0] + c];
+      l2 += d[c] * d[c];
+    }
+    return l2;
+  }
   static Real tension(const SpringLaw& law, Real l) {
     const Real s = l - Real(law.rest_length);
     return s * (Real(law.stiffness) + Real(law.quartic) * s * s);
@@ -145,12 +145,8 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
     for (const Spring& spring : scene_.springs) {
       const auto [i, j] = spring.nodes;
       if (number[i] == n && number[j] == n) continue;
-      Real e[3], l2 = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        e[c] = x[3 * j + c] - x[3 * i + c];
-        l2 += e[c] * e[c];
-      }
-      const Real l = plain_root(l2);
+      Real e[3];
+      const Real l2 = squared_length(spring, x, e), l = plain_root(l2);
       if (!(l > 0) && spring.law.rest_length > 0) return false;
       const Real s = l - Real(spring.law.rest_length);
       const Real along = Real(spring.law.stiffness) + 3 * Real(spring.law.quartic) * s * s;

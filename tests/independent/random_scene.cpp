@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Numbers by chance whose values no library decides.
+// Random numbers that are the same with every standard library.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : random_(seed) {}

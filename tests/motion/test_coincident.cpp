@@ -5,6 +5,7 @@
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/independent/comparison.hpp"
 #include "tests/independent/random_scene.hpp"
+#include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(coincident)
@@ -12,8 +13,6 @@ BOOST_AUTO_TEST_SUITE(coincident)
 using namespace qddot;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // A grid of n x n nodes drawn twice, sewn together by springs of no length, and stretched.
 Scene two_layers(int n, bool numbers_alternate) {
@@ -41,17 +40,8 @@ Scene two_layers(int n, bool numbers_alternate) {
   return scene;
 }
 
-// As drawn, but that pinned nodes rest.
-std::vector<Node> at_start(const Scene& scene) {
-  std::vector<Node> nodes = scene.nodes;
-  for (Node& node : nodes) {
-    if (node.pinned) node.velocity.setZero();
-  }
-  return nodes;
-}
-
-// Checks that all nodes are where they are drawn, and that energies and forces are those of the
-// drawn nodes, at the start and near it.
+// Checks that all nodes are where they are drawn. Energies and forces must be those of the drawn
+// nodes, at the start and near it.
 void check_all(const Scene& scene) {
   const ReducedScene reduced(scene);
   // Tolerances of mirrors, 64 eps, and turning there and back.

@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/reduce/part.hpp"
+#include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(far_away)
@@ -10,8 +11,6 @@ BOOST_AUTO_TEST_SUITE(far_away)
 using namespace qddot;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // Moved by whole numbers and as if drawn there: the coordinates that it has then, and here.
 struct Pair {

@@ -3,6 +3,7 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/reduce/part.hpp"
+#include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(line_energy)
@@ -10,8 +11,6 @@ BOOST_AUTO_TEST_SUITE(line_energy)
 using namespace qddot;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 long double potential_in_full(const Scene& scene, const std::vector<Node>& nodes) {
   long double v = 0;

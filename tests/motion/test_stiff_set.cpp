@@ -1,5 +1,4 @@
 // Springs that a scene names stiff stay so through all that is reduced, and nothing else changes.
-#include <limits>
 #include <random>
 
 #include <boost/test/unit_test.hpp>
@@ -15,8 +14,6 @@ BOOST_AUTO_TEST_SUITE(stiff_set)
 using namespace qddot;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // A system, or each of its parts, with its own unknowns of q.
 template <class Action>
@@ -52,8 +49,8 @@ double stiff_potential_by_hand(const Scene& scene, const std::vector<Node>& node
   return v;
 }
 
-// Whether V, f and K of the stiff and the soft springs add up to those of the whole, within the
-// rounding of some 30 springs at a node.
+// Whether V, f and K of the stiff and the soft springs add up to those of the whole. Rounding is
+// that of some 30 springs at a node.
 bool adds_up(const ReducedScene& reduced, const Vec& q) {
   bool good = true;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {

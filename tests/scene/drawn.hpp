@@ -47,8 +47,8 @@ inline Scene renumbered(const Scene& scene, const std::vector<std::size_t>& orde
   return other;
 }
 
-// A square of nodes with a cross in it, turning over none of its four mirrors: two lie along the
-// axes, two along the diagonals. Stretched, so that it pulses.
+// A square of nodes with a cross in it. It is stretched, so that it pulses, and has four mirrors:
+// two along the axes, two along the diagonals.
 inline Scene square(int dimension = 2) {
   Scene scene{.dimension = dimension};
   for (const auto& [x, y] : {std::pair(-1., -1.), {1., -1.}, {1., 1.}, {-1., 1.}, {0., 0.}}) {
@@ -62,8 +62,15 @@ inline Scene square(int dimension = 2) {
 }
 
 inline bool has(const ReducedScene& scene, Reduction reduction) {
-  return std::ranges::any_of(
-      scene.findings(), [&](const Finding& finding) { return finding.reduction == reduction; });
+  return std::ranges::count(scene.findings(), reduction, &Finding::reduction) > 0;
+}
+
+// The sentence on a reduction that was found; empty if it was not.
+inline std::string sentence(const ReducedScene& scene, Reduction reduction) {
+  for (const Finding& finding : scene.findings()) {
+    if (finding.reduction == reduction) return finding.what;
+  }
+  return "";
 }
 
 // Another state of the reduced scene: every coordinate and velocity changed by up to `change`.
@@ -73,6 +80,15 @@ inline State moved(const ReducedScene& reduced, double change, std::mt19937& ran
   for (double& x : state.q) x += part(random);
   for (double& v : state.v) v += part(random);
   return state;
+}
+
+// The nodes as drawn, but pinned ones rest.
+inline std::vector<Node> at_start(const Scene& scene) {
+  std::vector<Node> nodes = scene.nodes;
+  for (Node& node : nodes) {
+    if (node.pinned) node.velocity.setZero();
+  }
+  return nodes;
 }
 
 // V of all springs and of the weight of the free nodes, spring by spring over all nodes.

@@ -40,20 +40,19 @@ BOOST_AUTO_TEST_CASE(a_part_is_the_drawn_one_that_it_was_made_of) {
 
 BOOST_AUTO_TEST_CASE(whatever_is_lost_or_changed_is_found) {
   const Scene cloth = draw("cloth", {{"nodes", 5}});
-  const auto of = [&](const auto& change) { return difference(cloth, change); };
-  BOOST_TEST(contains(of([](Scene& s) { s.nodes[7].mass *= 1 + 1e-12; }), {"a mass would be"}));
-  BOOST_TEST(contains(of([](Scene& s) { s.nodes[7].pinned = true; }), {"nodes would move"}));
-  BOOST_TEST(contains(of([](Scene& s) { s.nodes[7].position.y() += 1e-11; }), {"from its place"}));
-  BOOST_TEST(contains(of([](Scene& s) { s.nodes[7].velocity.y() += 1e-11; }), {"velocity off by"}));
-  BOOST_TEST(
-      contains(of([](Scene& s) { s.springs[3].law.rest_length *= 0.9; }), {"potential energy"}));
-  BOOST_TEST(contains(of([](Scene& s) {
-                        s.springs.push_back({{0, 24}, {1, 0}});
-                      }),
-                      {"potential energy"}));
-  BOOST_TEST(contains(
-      difference(turned(cloth, some_rotation(), {0, 0, 1}), [](Scene& s) { s.gravity *= 1.001; }),
-      {"potential energy"}));
+  const auto is_told = [](const Scene& drawn, const std::string& words, const auto& change) {
+    return contains(difference(drawn, change), {words});
+  };
+  BOOST_TEST(is_told(cloth, "a mass would be", [](Scene& s) { s.nodes[7].mass *= 1 + 1e-12; }));
+  BOOST_TEST(is_told(cloth, "nodes would move", [](Scene& s) { s.nodes[7].pinned = true; }));
+  BOOST_TEST(is_told(cloth, "from its place", [](Scene& s) { s.nodes[7].position.y() += 1e-11; }));
+  BOOST_TEST(is_told(cloth, "velocity off by", [](Scene& s) { s.nodes[7].velocity.y() += 1e-11; }));
+  const std::string energy = "potential energy";
+  BOOST_TEST(is_told(cloth, energy, [](Scene& s) { s.springs[3].law.rest_length *= 0.9; }));
+  const Spring more{{0, 24}, {1, 0}};
+  BOOST_TEST(is_told(cloth, energy, [&](Scene& s) { s.springs.push_back(more); }));
+  const Scene tilted = turned(cloth, some_rotation(), {0, 0, 1});
+  BOOST_TEST(is_told(tilted, energy, [](Scene& s) { s.gravity *= 1.001; }));
 }
 
 BOOST_AUTO_TEST_CASE(what_underflows_is_no_difference) {
@@ -70,11 +69,7 @@ BOOST_AUTO_TEST_CASE(what_underflows_is_no_difference) {
 
 BOOST_AUTO_TEST_CASE(lines_and_planes_are_named_by_what_they_are) {
   const auto sentence = [](const Scene& scene) {
-    const ReducedScene reduced(scene);
-    for (const Finding& finding : reduced.findings()) {
-      if (finding.reduction == Reduction::dimension) return finding.what;
-    }
-    return std::string();
+    return tests::sentence(ReducedScene(scene), Reduction::dimension);
   };
   // A pair that swings along the line from (1, 2) to (4, 6).
   Scene pair{.dimension = 2};

@@ -193,9 +193,8 @@ BOOST_AUTO_TEST_CASE(a_scene_is_expanded_to_the_same_in_memory_that_holds_anothe
     reduced.expand(state, nodes);
     const std::vector<Node> fresh = reduced.expand(state);
     BOOST_REQUIRE(nodes.size() == fresh.size());
+    BOOST_TEST(farthest(nodes, fresh) == 0);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      BOOST_TEST((nodes[i].position == fresh[i].position));
-      BOOST_TEST((nodes[i].velocity == fresh[i].velocity));
       BOOST_TEST(nodes[i].mass == fresh[i].mass);
       BOOST_TEST(nodes[i].pinned == fresh[i].pinned);
     }

@@ -48,18 +48,14 @@ BOOST_AUTO_TEST_CASE(nodes_of_a_face_are_numbered_without_vertices_left_out) {
   BOOST_TEST((scene.nodes[scene.faces[0][2]].position == Eigen::Vector3d(2, 2, 0)));
 }
 
-BOOST_AUTO_TEST_CASE(faces_decide_no_motion) {
+BOOST_AUTO_TEST_CASE(faces_decide_no_motion_and_are_there_at_equilibrium) {
   Scene scene = small("cloth");
+  BOOST_TEST((settled(scene, "test").faces == scene.faces));
   const std::string hash = content_hash(scene);
   const std::string text = to_toml(scene);
   scene.faces.clear();
   BOOST_TEST(content_hash(scene) == hash);
   BOOST_TEST(to_toml(scene) == text);
-}
-
-BOOST_AUTO_TEST_CASE(a_scene_at_its_equilibrium_has_its_faces) {
-  const Scene scene = small("cloth");
-  BOOST_TEST((settled(scene, "test").faces == scene.faces));
 }
 
 BOOST_AUTO_TEST_CASE(faces_of_other_nodes_are_refused) {

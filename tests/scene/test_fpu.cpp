@@ -11,8 +11,8 @@ using namespace qddot;
 namespace {
 
 // Displacements q_i = x_i - 10 i of up to 1 m, from positions of up to 70 m, have errors of some 70
-// eps = 2e-14. Energies of 1 J have errors of less than this tolerance for w up to 100, also of
-// stiff springs: their elongations of 1/w give k 1/w 2e-14 = w/2 2e-14 J.
+// eps = 2e-14. Elongations of stiff springs, 1/w, so give energies an error of k 1/w 2e-14 = w/2
+// 2e-14 J. That is less than this for w up to 100.
 constexpr double tolerance = 1e-12;
 
 }  // namespace
@@ -35,6 +35,7 @@ BOOST_AUTO_TEST_CASE(standard_is_that_of_hairer_lubich_and_wanner) {
     const bool stiff = e % 2 == 1;
     BOOST_TEST((spring.nodes == std::array<std::size_t, 2>{e, e + 1}));
     BOOST_TEST(spring.law.stiffness == (stiff ? 1250 : 0));
+    BOOST_TEST(spring.law.rest_length == 10);
     BOOST_TEST(spring.law.quartic == (stiff ? 0 : 4));
     BOOST_TEST(is_stiff(spring.law, scene.stiff_above) == stiff);
   }

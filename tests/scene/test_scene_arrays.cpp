@@ -85,9 +85,7 @@ BOOST_AUTO_TEST_CASE(arrays_that_do_not_fit_are_refused_by_name) {
   for (const auto& [said, words] : std::vector<std::array<std::string, 2>>{
            {refusal([](A& a) { a.mass = Eigen::VectorXd::Ones(2); }),
             "mass: 2 entries; allowed are 1 or 3"},
-           {refusal([](A& a) {
-              a.springs[1] = {1, 3};
-            }),
+           {refusal([](A& a) { a.springs[1][1] = 3; }),
             "springs[1]: node 3 is none of the 3 nodes"},
            {refusal([](A& a) { a.pinned = {7}; }), "pinned[0]: node 7"},
            {refusal([](A& a) { a.gravity = Eigen::Vector3d(0, -9.81, 0); }),
@@ -96,10 +94,7 @@ BOOST_AUTO_TEST_CASE(arrays_that_do_not_fit_are_refused_by_name) {
            {refusal([](A& a) { a.velocities = Eigen::MatrixXd::Zero(3, 1); }),
             "velocities: 3 entries"},
            {refusal([](A& a) { a.stiffness[0] = -1; }), "stiffness"},
-           {refusal([](A& a) {
-              a.springs[0] = {1, 1};
-            }),
-            "springs[0]"}})
+           {refusal([](A& a) { a.springs[0][0] = 1; }), "springs[0]"}})
     BOOST_TEST(names_all(said, {words}), said);
 }
 

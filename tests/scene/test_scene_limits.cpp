@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <string>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,8 +1,6 @@
+#include <cfloat>
 #include <cmath>
-#include <limits>
 #include <random>
-#include <string>
-#include <vector>
 
 #include <boost/test/unit_test.hpp>
 
@@ -19,27 +17,17 @@ namespace {
 
 Scene read_back(const Scene& scene) { return parsed(to_toml(scene)); }
 
-const std::vector<double> hard_numbers = {0,
-                                          -0.0,
-                                          1,
-                                          -1,
-                                          0.1,
-                                          0x1.5555555555555p-2,
-                                          5e-324,
-                                          123,
-                                          -1e308,
-                                          1e308,
-                                          1e15,
-                                          1e16,
-                                          1e-310,
-                                          1e22,
-                                          1e23,
-                                          0x1.0000000000001p0,
-                                          100,
-                                          4.1e-5,
-                                          -1e-300,
-                                          9007199254740992.0,
-                                          std::numeric_limits<double>::max()};
+const std::vector<double> hard_numbers = {0,       -0.0,
+                                          1,       -1,
+                                          0.1,     0x1.5555555555555p-2,
+                                          5e-324,  123,
+                                          -1e308,  1e308,
+                                          1e15,    1e16,
+                                          1e-310,  1e22,
+                                          1e23,    0x1.0000000000001p0,
+                                          100,     4.1e-5,
+                                          -1e-300, 9007199254740992.0,
+                                          DBL_MAX};
 
 // Numbers of every size and sign, the hard ones among them.
 class Numbers {

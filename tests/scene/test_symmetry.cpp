@@ -1,5 +1,4 @@
-// When a scene has a plane to lie in or a mirror, and when it has not: the smallest deviation that
-// is more than rounding decides.
+// A scene has a plane to lie in or a mirror, unless it deviates from it by more than rounding.
 #include <numeric>
 
 #include <boost/test/unit_test.hpp>
