@@ -1,14 +1,14 @@
 #include <bit>
+#include <cfloat>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/csv.hpp"
-#include "qddot/scene/invalid_input.hpp"
 #include "tests/folder.hpp"
+#include "tests/scene/refusal.hpp"
 
 BOOST_AUTO_TEST_SUITE(csv)
 
@@ -20,15 +20,12 @@ namespace {
 std::string complaint(const std::string& text) {
   const Folder folder;
   const std::string path = folder.write("x.csv", text);
-  try {
+  const std::string said = refusal_of([&] {
     const WrittenTable table(path, {"a", "b"});
     for (std::size_t row = 0; row < table.size(); ++row) table.number(row, "b");
-  } catch (const InvalidInput& error) {
-    const std::string said = error.what();
-    BOOST_TEST(said.starts_with(path));
-    return said.substr(path.size());
-  }
-  return "";
+  });
+  BOOST_TEST((said.empty() || said.starts_with(path)));
+  return said.empty() ? "" : said.substr(path.size());
 }
 
 }  // namespace
@@ -91,13 +88,7 @@ BOOST_AUTO_TEST_CASE(a_table_whose_sidecar_cannot_be_written_is_refused_at_once)
 
 BOOST_AUTO_TEST_CASE(any_text_and_every_double_read_back) {
   const std::vector<std::string> texts = {"plain", "a,b", "\"", "\"\"", ",\"\n\",", "x\ny", ""};
-  std::vector<double> values = {0.1,
-                                1.0 / 3,
-                                std::nextafter(1.0, 2.0),
-                                std::numeric_limits<double>::max(),
-                                std::numeric_limits<double>::min(),
-                                std::numeric_limits<double>::denorm_min(),
-                                -0.0};
+  std::vector<double> values = {0.1, 1.0 / 3, 0x1.0000000000001p0, DBL_MAX, DBL_MIN, 5e-324, -0.0};
   std::mt19937_64 random(1);
   while (values.size() < 2000) {
     const double value = std::bit_cast<double>(random());
@@ -124,12 +115,8 @@ BOOST_AUTO_TEST_CASE(what_is_no_such_table_is_said) {
   BOOST_TEST(complaint("a,c\n1,2\n") == ": the column b is missing");
   BOOST_TEST(complaint("a,b\n1,2\n1,2,3\n") == ": row 2 has 3 fields, and the header 2");
   BOOST_TEST(complaint("a,b\n1,2x\n") == ": row 1: b is '2x', which is no number");
-}
-
-BOOST_AUTO_TEST_CASE(a_file_that_is_not_there_is_named) {
-  BOOST_CHECK_EXCEPTION(WrittenTable("nowhere/x.csv", {}), InvalidInput, [](const auto& error) {
-    return error.what() == std::string("nowhere/x.csv: it cannot be read");
-  });
+  BOOST_TEST(refusal_of([] { WrittenTable("nowhere/x.csv", {}); }) ==
+             "nowhere/x.csv: it cannot be read");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -19,6 +19,10 @@ struct Shown {
                      .columns = [this] { return columns; },
                      .write = [this](std::string_view text) { written.emplace_back(text); }}};
 
+  explicit Shown(Progress::Form form, std::size_t pieces = 0, double quiet = 0) {
+    progress.start("bench", form, quiet);
+    if (pieces > 0) progress.begin(pieces);
+  }
   std::string last() const { return written.empty() ? "" : written.back(); }
 };
 
@@ -73,8 +77,7 @@ BOOST_AUTO_TEST_CASE(text_is_cut_by_what_it_takes_on_a_terminal) {
 }
 
 BOOST_AUTO_TEST_CASE(a_terminal_s_line_says_what_is_measured) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::line);
+  Shown shown(Progress::Form::line);
   shown.progress.stage("making the reference");
   BOOST_TEST(shown.last() == line("bench  making the reference  0:00"));
   shown.progress.begin(3);
@@ -94,9 +97,7 @@ BOOST_AUTO_TEST_CASE(a_terminal_s_line_says_what_is_measured) {
 }
 
 BOOST_AUTO_TEST_CASE(it_is_written_at_most_ten_times_a_second) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::line);
-  shown.progress.begin(10000);
+  Shown shown(Progress::Form::line, 10000);
   for (int i = 0; i < 3000; ++i) {  // 3 s
     shown.now += 1e-3;
     shown.progress.now_at("verlet");
@@ -106,8 +107,7 @@ BOOST_AUTO_TEST_CASE(it_is_written_at_most_ten_times_a_second) {
 }
 
 BOOST_AUTO_TEST_CASE(it_is_wiped_once_and_closed_for_good) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::line);
+  Shown shown(Progress::Form::line);
   shown.progress.wipe();
   BOOST_TEST(shown.written.empty());  // there is nothing to wipe
   shown.progress.stage("a");
@@ -125,8 +125,7 @@ BOOST_AUTO_TEST_CASE(it_is_wiped_once_and_closed_for_good) {
 }
 
 BOOST_AUTO_TEST_CASE(plain_lines_say_what_is_done_and_are_half_a_minute_apart) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::plain);
+  Shown shown(Progress::Form::plain);
   shown.progress.stage("making the reference");
   shown.progress.begin(100);
   for (int i = 0; i < 100; ++i) {
@@ -145,9 +144,7 @@ BOOST_AUTO_TEST_CASE(plain_lines_say_what_is_done_and_are_half_a_minute_apart) {
 }
 
 BOOST_AUTO_TEST_CASE(what_is_over_soon_is_quiet) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::plain, 30);
-  shown.progress.begin(40);
+  Shown shown(Progress::Form::plain, 40, 30);
   for (int i = 0; i < 40; ++i) {
     shown.now += 1;
     shown.progress.finish("verlet is done");
@@ -157,9 +154,7 @@ BOOST_AUTO_TEST_CASE(what_is_over_soon_is_quiet) {
 }
 
 BOOST_AUTO_TEST_CASE(the_time_left_is_that_of_the_pieces_to_come_at_the_pace_of_those_measured) {
-  Shown shown;
-  shown.progress.start("bench", Progress::Form::line);
-  shown.progress.begin(8);
+  Shown shown(Progress::Form::line, 8);
   shown.progress.now_at("a");
   BOOST_TEST(shown.last() == line("bench 1/8  a  0:00"));  // nobody knows yet
   shown.progress.finish("a");                              // kept from before

@@ -1,9 +1,8 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/kit/whole_file.hpp"
-#include "qddot/scene/invalid_input.hpp"
 #include "tests/folder.hpp"
-#include "tests/fragments.hpp"
+#include "tests/scene/refusal.hpp"
 
 BOOST_AUTO_TEST_SUITE(whole_file)
 
@@ -12,12 +11,7 @@ using namespace qddot;
 namespace {
 
 std::string refusal(const std::string& path) {
-  try {
-    WholeFile file(path);
-    return "";
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
+  return refusal_of([&] { WholeFile file(path); });
 }
 
 }  // namespace
