@@ -7,14 +7,17 @@
 namespace qddot {
 inline namespace tests {
 
-// While this lives, the time of measurements is that of the processor for this process, so that
-// they find the same beside other processes.
-struct ProcessorClock {
-  ProcessorClock() { clock_in_use = now; }
-  ~ProcessorClock() { clock_in_use = std::chrono::steady_clock::now; }
-  ProcessorClock(const ProcessorClock&) = delete;
-  ProcessorClock& operator=(const ProcessorClock&) = delete;
+// While this lives, measurements go by a clock of the test's.
+struct ClockOfTest {
+  explicit ClockOfTest(std::chrono::steady_clock::time_point (*now)()) { clock_in_use = now; }
+  ~ClockOfTest() { clock_in_use = std::chrono::steady_clock::now; }
+  ClockOfTest(const ClockOfTest&) = delete;
+  ClockOfTest& operator=(const ClockOfTest&) = delete;
+};
 
+// The processor's time for this process, so that measurements find the same beside other processes.
+struct ProcessorClock : ClockOfTest {
+  ProcessorClock() : ClockOfTest(now) {}
   static std::chrono::steady_clock::time_point now() {
     timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -23,13 +26,19 @@ struct ProcessorClock {
   }
 };
 
-// While this lives, time passes by what a test says alone.
-struct MadeClock {
-  MadeClock() { clock_in_use = now; }
-  ~MadeClock() { clock_in_use = std::chrono::steady_clock::now; }
-  MadeClock(const MadeClock&) = delete;
-  MadeClock& operator=(const MadeClock&) = delete;
+// Each look at the clock takes a microsecond and nothing else takes time, so that measurements find
+// the same on every machine. Each thread has its own time.
+struct CountedClock : ClockOfTest {
+  CountedClock() : ClockOfTest(now) {}
+  static std::chrono::steady_clock::time_point now() {
+    static thread_local std::chrono::steady_clock::time_point time;
+    return time += std::chrono::microseconds(1);
+  }
+};
 
+// Time passes by what a test says alone.
+struct MadeClock : ClockOfTest {
+  MadeClock() : ClockOfTest(now) {}
   static void pass(double seconds) {
     time = time.load() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                              std::chrono::duration<double>(seconds));

@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
@@ -10,6 +11,25 @@ BOOST_AUTO_TEST_SUITE(drift_run)
 using namespace qddot;
 
 namespace {
+
+// Verlet's method with the positions' h^2 larger by d = 1/1000:
+//   q_{n+1} = q_n + h v_n + (1 + d) h^2/2 a_n,   v_{n+1} = v_n + h/2 (a_n + a_{n+1}).
+// The matrix of a step on q'' = -w^2 q has the determinant 1 - d h^2 w^2/2, by which energy falls.
+class LeaningVerlet final : public FixedStep {
+ public:
+  using FixedStep::FixedStep;
+
+ private:
+  Outcome step(const State& now, double h, State& next) override {
+    Vec a(now.q.size()), b(now.q.size());
+    force(now.q, a);
+    a = a.cwiseQuotient(system().mass());
+    next.q = now.q + h * now.v + (1 + 1e-3) * h * h / 2 * a;
+    force(next.q, b);
+    next.v = now.v + h / 2 * (a + b.cwiseQuotient(system().mass()));
+    return Outcome::reached_end;
+  }
+};
 
 struct Study {
   explicit Study(const std::string& name) : drawn(load_scene(name)) {}
@@ -47,6 +67,21 @@ BOOST_AUTO_TEST_CASE(over_a_million_steps_verlet_does_not_drift_and_rk4_does) {
 
   const DriftRun rk4 = orbit.of("rk4", 0.02, 1e6);
   BOOST_TEST(rk4.energy.drift.high < 0);
+}
+
+BOOST_AUTO_TEST_CASE(one_coefficient_off_by_a_thousandth_is_caught) {
+  Method leaning = *find_method("verlet");
+  leaning.make = create<LeaningVerlet>;
+  const double h = 0.02;
+  const Study orbit("orbit"), oscillator("oscillator");
+  const DriftRun wrong = orbit.of(leaning, h, h, 1e5 * h);
+  BOOST_TEST(wrong.energy.drift.high < 0);
+  BOOST_TEST(verdict_name(wrong.energy.verdict) != "bounded");
+  // The determinant, with w = 10 rad/s.
+  const DriftRun damped = oscillator.of(leaning, h, h, 2000);
+  BOOST_TEST(
+      damped.energy.drift.value == std::log1p(-1e-3 * 100 * h * h / 2) / h * damped.scales.excess,
+      boost::test_tools::tolerance(0.02));
 }
 
 BOOST_AUTO_TEST_CASE(implicit_euler_dissipates_and_explicit_euler_grows_as_predicted) {

@@ -10,11 +10,13 @@ namespace {
 
 constexpr double until = 200, window = 5;
 
+using Energy = std::function<double(double t)>;
+
 // Two springs that exchange an energy E(t) to and fro: E cos^2(a t/50), E sin^2(a t/50), and
 // vibrate by some tenths of it, unless `ripple` is zero. Seen every 0.21 s, so that the window
 // holds about 24 of them.
-template <class Energy>
-EnergyCourse course_of(double a, const Energy& energy, double ripple = 0) {
+EnergyCourse course_of(
+    double a, double ripple = 0, const Energy& energy = [](double) { return 1; }) {
   EnergyCourse course;
   for (double t = 0; t <= until; t += 0.21) {
     const double c = std::cos(a * t / 50), s = std::sin(a * t / 50);
@@ -23,10 +25,6 @@ EnergyCourse course_of(double a, const Energy& energy, double ripple = 0) {
     course.energies.push_back(energy(t) * shares);
   }
   return course;
-}
-EnergyCourse course_of(double a, double ripple = 0) {
-  return course_of(
-      a, [](double) { return 1.0; }, ripple);
 }
 
 // The factor by which a running mean reduces the waves of cos^2(t/50): sinc(window/50).
@@ -73,12 +71,12 @@ BOOST_AUTO_TEST_CASE(the_distance_is_that_of_the_means) {
 
 BOOST_AUTO_TEST_CASE(what_is_lost_and_gained_is_told_apart_from_the_exchange) {
   const EnergyCourse exact = course_of(1);
-  const auto damped = course_of(1, [](double t) { return std::exp(-t / 100); });
+  const auto damped = course_of(1, 0, [](double t) { return std::exp(-t / 100); });
   const ExchangeComparison c = compare(damped, exact, window);
   BOOST_TEST(std::abs(c.last / c.first - std::exp(-2)) < 0.03 * std::exp(-2));
   BOOST_TEST(std::abs(c.level - (1 - std::exp(-2)) / 2) < 1e-3);
   // A constant factor is no loss on the way.
-  const auto large = course_of(1, [](double) { return 4.5; });
+  const auto large = course_of(1, 0, [](double) { return 4.5; });
   const ExchangeComparison d = compare(large, exact, window);
   BOOST_TEST(std::abs(d.first - 4.5) < 1e-11);
   BOOST_TEST(std::abs(d.last - 4.5) < 1e-11);

@@ -1,9 +1,8 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/momenta.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "qddot/scene/scene_file.hpp"
+#include "tests/integrators/scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(momenta)
 
@@ -16,10 +15,7 @@ constexpr double speed = 1;
 // The change of the scene's conserved momenta in an accurate run to `until`.
 double change_of_run(const Scene& scene, double until) {
   const ReducedScene reduced(scene, Reductions::only({Reduction::pins}));
-  const auto integrator =
-      make_integrator(*find_method("kahan_li8"), reduced.system(), {.step_size = 1e-3});
-  State state = reduced.initial();
-  BOOST_TEST_REQUIRE((integrator->advance(state, until).outcome == Outcome::reached_end));
+  const State state = state_after(reduced, method_named("kahan_li8"), 1e-3, until);
   const Momenta momenta(scene);
   BOOST_TEST_REQUIRE(momenta.any_kept());
   return momenta.change(reduced.expand(reduced.initial()), reduced.expand(state), until, speed);
@@ -34,9 +30,7 @@ Scene triangle(std::vector<Eigen::Vector3d> pins, Eigen::Vector3d gravity) {
   const auto join = [&](std::size_t i, std::size_t j) {
     scene.springs.push_back({{i, j}, {.stiffness = 50, .rest_length = 1}});
   };
-  for (const auto& [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0)}) {
-    join(std::size_t(i), std::size_t(j));
-  }
+  for (std::size_t i = 0; i < 3; ++i) join(i, (i + 1) % 3);
   for (const Eigen::Vector3d& pin : pins) {
     scene.nodes.push_back({.position = pin, .pinned = true});
     for (std::size_t i = 0; i < 3; ++i) join(i, scene.nodes.size() - 1);
@@ -51,12 +45,10 @@ const Eigen::Vector3d none = {0, 0, 0}, down = {0, 0, -9.81}, at = {0.3, 0.2, 2}
 BOOST_AUTO_TEST_CASE(what_symmetry_says_is_kept) {
   // A run of a thousand steps of order 8, which keeps momenta but for rounding.
   constexpr double rounding = 1e-12;
-  BOOST_TEST(change_of_run(triangle({}, none), 1) < rounding);
-  BOOST_TEST(change_of_run(triangle({}, down), 1) < rounding);
-  BOOST_TEST(change_of_run(triangle({at}, none), 1) < rounding);
-  BOOST_TEST(change_of_run(triangle({at}, down), 1) < rounding);
-  BOOST_TEST(change_of_run(triangle({at, {0.3, 0.2, -1}}, down), 1) < rounding);
-  BOOST_TEST(change_of_run(triangle({at, {1.3, 0.2, 1}}, none), 1) < rounding);
+  for (const Scene& scene :
+       {triangle({}, none), triangle({}, down), triangle({at}, none), triangle({at}, down),
+        triangle({at, {0.3, 0.2, -1}}, down), triangle({at, {1.3, 0.2, 1}}, none)})
+    BOOST_TEST(change_of_run(scene, 1) < rounding);
 }
 
 BOOST_AUTO_TEST_CASE(what_it_does_not_say_is_not_asked_for) {

@@ -14,14 +14,10 @@ namespace {
 // part. They vibrate with nearly `slow` and `fast` [rad/s], with amplitudes 1 and `share`.
 Scene two_vibrations(double slow, double fast, double share) {
   Scene scene{.name = "two", .dimension = 1};
-  scene.nodes.resize(3);
-  scene.nodes[0].pinned = true;
-  scene.nodes[1] = {.position = {1, 0, 0}, .mass = 1};
-  scene.nodes[2] = {.position = {share, 0, 0}, .mass = 1};
-  const double joint = 1e-9 * slow * slow;
-  scene.springs.push_back({{0, 1}, {.stiffness = slow * slow}});
-  scene.springs.push_back({{0, 2}, {.stiffness = fast * fast}});
-  scene.springs.push_back({{1, 2}, {.stiffness = joint}});
+  scene.nodes = {
+      {.pinned = true}, {.position = {1, 0, 0}, .mass = 1}, {.position = {share, 0, 0}, .mass = 1}};
+  scene.springs = {
+      {{0, 1}, {slow * slow}}, {{0, 2}, {fast * fast}}, {{1, 2}, {1e-9 * slow * slow}}};
   return scene;
 }
 
@@ -50,8 +46,8 @@ BOOST_AUTO_TEST_CASE(a_single_vibration_has_its_own_frequency_at_all_orders) {
 }
 
 BOOST_AUTO_TEST_CASE(rounding_is_no_vibration) {
-  // Bursts for a fast vibration that the motion has not: from order 4 on, differences of the slow
-  // one, (h slow)^5 = 3e-22, are far below their rounding.
+  // Bursts are made for a fast vibration that the motion has not. From order 4 on, differences of
+  // the slow one, (h slow)^5 = 3e-22, are far below their rounding.
   const double slow = 1, fast = 1e4;
   const OwnFrequencies own = of(two_vibrations(slow, fast, 0), 9, fast);
   // They go on as those before, whose few samples are off by some percent.

@@ -16,11 +16,10 @@ Times multiples(double every, double until) { return qddot::measure::samples(eve
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(samples_are_the_multiples_up_to_the_end) {
-  BOOST_TEST(multiples(0.25, 1) == (Times{0, 0.25, 0.5, 0.75, 1}),
-             boost::test_tools::per_element());
-  BOOST_TEST(multiples(0.4, 1) == (Times{0, 0.4, 0.8}), boost::test_tools::per_element());
-  BOOST_TEST(multiples(1, 1) == (Times{0, 1}), boost::test_tools::per_element());
-  BOOST_TEST(multiples(3, 1) == (Times{0}), boost::test_tools::per_element());
+  BOOST_TEST((multiples(0.25, 1) == Times{0, 0.25, 0.5, 0.75, 1}));
+  BOOST_TEST((multiples(0.4, 1) == Times{0, 0.4, 0.8}));
+  BOOST_TEST((multiples(1, 1) == Times{0, 1}));
+  BOOST_TEST((multiples(3, 1) == Times{0}));
   BOOST_TEST(multiples(0, 1).empty());
 }
 
@@ -52,12 +51,10 @@ BOOST_AUTO_TEST_CASE(too_many_samples_are_refused) {
 BOOST_AUTO_TEST_CASE(merged_holds_each_time_after_zero_once_and_in_order) {
   using Lists = std::vector<Times>;
   const auto of = [](const Lists& lists) { return merged(lists); };
-  BOOST_TEST(of({{0, 0.2, 0.4}, {0, 0.3, 0.4}}) == (Times{0.2, 0.3, 0.4}),
-             boost::test_tools::per_element());
-  BOOST_TEST(of({{0, 0.2, 0.4}, {0, 0.3, 0.4}, {0, 0.1}}) == (Times{0.1, 0.2, 0.3, 0.4}),
-             boost::test_tools::per_element());
-  BOOST_TEST(of({{}, {0, 1}}) == (Times{1}), boost::test_tools::per_element());
-  BOOST_TEST(of({{0, 1}, {}, {}}) == (Times{1}), boost::test_tools::per_element());
+  BOOST_TEST((of({{0, 0.2, 0.4}, {0, 0.3, 0.4}}) == Times{0.2, 0.3, 0.4}));
+  BOOST_TEST((of({{0, 0.2, 0.4}, {0, 0.3, 0.4}, {0, 0.1}}) == Times{0.1, 0.2, 0.3, 0.4}));
+  BOOST_TEST((of({{}, {0, 1}}) == Times{1}));
+  BOOST_TEST((of({{0, 1}, {}, {}}) == Times{1}));
   BOOST_TEST(of({}).empty());
   BOOST_TEST(of({{}, {}}).empty());
   BOOST_TEST(of({{0}, {0}}).empty());

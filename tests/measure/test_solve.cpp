@@ -9,6 +9,7 @@
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/speed/measurement.hpp"
 #include "tests/fragments.hpp"
 #include "tests/measure/clocks.hpp"
 #include "tests/measure/drawn_scenes.hpp"
@@ -102,14 +103,11 @@ BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {
   // starts a twentieth out of place and vibrates by that, which is more than the accuracy. Implicit
   // steps far longer than its period keep it in place, or put it opposite.
   Scene scene{.name = "stiff and slow", .dimension = 1};
-  scene.nodes.resize(3);
-  scene.nodes[0].pinned = true;
-  for (const std::size_t i : {1u, 2u}) scene.nodes[i].mass = 1;
-  scene.nodes[1].position = {1.05, 0, 0};
-  scene.nodes[2].position = {3, 0, 0};
-  scene.nodes[2].velocity = {3, 0, 0};
-  scene.springs.push_back({{0, 1}, {.stiffness = 1e10, .rest_length = 1}});
-  scene.springs.push_back({{1, 2}, {.stiffness = 1, .rest_length = 1, .quartic = 0.1}});
+  scene.nodes = {{.pinned = true},
+                 {.position = {1.05, 0, 0}, .mass = 1},
+                 {.position = {3, 0, 0}, .velocity = {3, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1e10, .rest_length = 1}},
+                   {{1, 2}, {.stiffness = 1, .rest_length = 1, .quartic = 0.1}}};
   const ReducedScene model(scene);
   BOOST_TEST_REQUIRE(!model.system().stiffness_is_constant());
   for (const double until : {0.3, 0.7}) {
@@ -219,10 +217,8 @@ BOOST_AUTO_TEST_CASE(nodes_without_mass_are_taken_by_tolerance) {
 
 BOOST_AUTO_TEST_CASE(what_rests_needs_no_run) {
   Scene scene{.name = "rest", .dimension = 2};
-  scene.nodes.resize(2);
-  scene.nodes[0].pinned = scene.nodes[1].pinned = true;
-  scene.nodes[1].position = {1, 0, 0};
-  scene.springs.push_back({{0, 1}, {.stiffness = 1, .rest_length = 1}});
+  scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}, .pinned = true}};
+  scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}}};
   const Answer answer = measure::solve(scene, 1, 1e-6);
   BOOST_TEST(answer.is_reached);
   BOOST_TEST(answer.nodes.size() == 2u);
@@ -263,10 +259,8 @@ BOOST_AUTO_TEST_CASE(advice_holds_when_it_is_followed) {
         BOOST_TEST_REQUIRE(advice.take.has_value());
         BOOST_TEST(advice.margin() >= 1);
         BOOST_TEST(advice.take->error <= advice.accuracy);
-        Simulation run(scene, *advice.take->method,
-                       advice.take->method->knob == Knob::step_size
-                           ? Options{.step_size = advice.take->value}
-                           : Options{.rtol = advice.take->value});
+        const Method& taken = *advice.take->method;
+        Simulation run(scene, taken, options_for(taken, advice.take->value, model));
         BOOST_TEST_REQUIRE((run.advance(until).outcome == Outcome::reached_end));
         const double error = errors_between(run.model(), run.state(), reference.end,
                                             reference.energy, reference.scales)

@@ -16,6 +16,11 @@ Options scales_of(const Scene& scene, const Reductions& reductions = {}) {
   return with_tolerance_scales({}, ReducedScene(scene, reductions));
 }
 
+// Whether the scene's length [m] and speed [m/s] are these to the bit.
+bool has_scales(const Scene& scene, double length, double speed) {
+  return scales_of(scene).length == length && scales_of(scene).speed == speed;
+}
+
 // Three masses in a plane, none alike, on two springs under tension, all moving.
 Scene falling_triangle() {
   Scene scene{.dimension = 2, .gravity = {0, -9.81, 0}};
@@ -67,13 +72,11 @@ BOOST_AUTO_TEST_CASE(a_cloth_at_its_rest_lengths_falls_across_itself) {
 BOOST_AUTO_TEST_CASE(a_scene_at_rest_in_balance_has_its_extent_each_second) {
   const Scene chain =
       drawn("chain", {{"nodes", 5}, {"length", 3}, {"gravity", 0}});  // 3/4 m each, not rounded
-  BOOST_TEST(scales_of(chain).length == 3);
-  BOOST_TEST(scales_of(chain).speed == 3);
+  BOOST_TEST(has_scales(chain, 3, 3));
   Scene pair{.dimension = 1};
   pair.nodes = {{.position = {0, 0, 0}, .mass = 1}, {.position = {2, 0, 0}, .mass = 1}};
   pair.springs = {{{0, 1}, {.stiffness = 10, .rest_length = 2}}};
-  BOOST_TEST(scales_of(pair).length == 2);
-  BOOST_TEST(scales_of(pair).speed == 2);
+  BOOST_TEST(has_scales(pair, 2, 2));
 }
 
 BOOST_AUTO_TEST_CASE(a_free_body_is_as_fast_as_its_fastest_node) {
@@ -125,17 +128,14 @@ BOOST_AUTO_TEST_CASE(what_is_pinned_has_an_extent_and_no_speed) {
   Scene scene{.dimension = 2, .gravity = {0, -9.81, 0}};
   scene.nodes = {{.pinned = true}, {.position = {3, 4, 0}, .velocity = {7, 0, 0}, .pinned = true}};
   scene.springs = {{{0, 1}, {.stiffness = 10}}};
-  BOOST_TEST(scales_of(scene).length == 4);  // of the coordinates, the widest
-  BOOST_TEST(scales_of(scene).speed == 4);
+  BOOST_TEST(has_scales(scene, 4, 4));  // of the coordinates, the widest
 }
 
 BOOST_AUTO_TEST_CASE(without_any_extent_a_length_is_a_metre) {
   Scene scene{.dimension = 1};
-  BOOST_TEST(scales_of(scene).length == 1);
-  BOOST_TEST(scales_of(scene).speed == 1);
+  BOOST_TEST(has_scales(scene, 1, 1));
   scene.nodes = {{.position = {5, 0, 0}, .mass = 1}};
-  BOOST_TEST(scales_of(scene).length == 1);
-  BOOST_TEST(scales_of(scene).speed == 1);
+  BOOST_TEST(has_scales(scene, 1, 1));
 }
 
 BOOST_AUTO_TEST_CASE(nothing_else_of_the_options_changes) {

@@ -2,8 +2,8 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/measurement.hpp"
-#include "qddot/scene/generators.hpp"
 #include "qddot/scene/scene_file.hpp"
+#include "tests/measure/drawn_scenes.hpp"
 
 BOOST_AUTO_TEST_SUITE(watch)
 
@@ -103,8 +103,7 @@ BOOST_AUTO_TEST_CASE(adaptive_methods_are_watched_as_well) {
 
 BOOST_AUTO_TEST_CASE(beyond_the_horizon_the_modes_are_compared) {
   // Four masses in a row on soft springs, let go from the horizontal.
-  const Scene chain = generate(*find_generator("chain"), {{"nodes", 4}, {"stiffness", 1000}}, "");
-  const Watched run{chain, 12};
+  const Watched run{drawn("chain", {{"nodes", 4}, {"stiffness", 1000}}), 12};
   BOOST_TEST_REQUIRE(run.reference.is_beyond_horizon());
   const double floor = run.reference.modal_shares_floor;
   BOOST_TEST((floor > 0 && floor < 0.5));
