@@ -17,7 +17,7 @@ Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6
 using Spoil = void (*)(double& entry);
 void break_it(double&) { throw std::runtime_error("the spring broke"); }
 void lose_it(double& entry) { entry = NAN; }
-void overflow(double& entry) { entry = std::numeric_limits<double>::infinity(); }
+void overflow(double& entry) { entry = INFINITY; }
 
 // A hammock that the method applies to. The forces or stiffnesses of one of its relays are spoiled
 // from one of them on.

@@ -121,6 +121,7 @@ class Orders(Programs):
         rows = made(CONVERGENCE).table("out/order.csv")
         self.assertGreater(min(one["error_position"] for one in rows), 0)
         told = [one for one in rows if one["observed_order"]]
+        self.assertEqual(made(CONVERGENCE).sidecar("out/order.json")["reduced"]["unknowns"], 3)
         self.assertGreaterEqual(len(told), 8)
         orders = {"verlet": 2, "blanes_moan6": 6, "kahan_li8": 8}
         for one in told:

@@ -83,7 +83,12 @@ class Charts(Programs):
             self.assertEqual(origin["outcomes"].keys(), outcomes)
             self.assertTrue(all(origin["outcomes"].values()))
             reduced = origin["reduced"]
-            self.assertEqual(reduced["unknowns"], 2 if drawn == "orbit" else 1)
+            self.assertEqual(sidecar(out + "/front.json")["reduced"], reduced)
+            has = "unknowns", "unknowns_drawn", "stiffness_is_constant"
+            there = (2, 6, False) if drawn == "orbit" else (1, 2, True)
+            self.assertEqual(tuple(reduced[name] for name in has), there)
+            found = "dimension" if drawn == "orbit" else "constant_stiffness"
+            self.assertEqual([note["name"] for note in reduced["reductions"]], ["pins", found])
             self.near(reduced["omega_max"], 10, 1e-9)
             self.assertEqual((reduced["parts"], reduced["unstable_directions"]), (1, 0))
 
