@@ -84,11 +84,10 @@ class Charts(Programs):
             self.assertTrue(all(origin["outcomes"].values()))
             reduced = origin["reduced"]
             self.assertEqual(sidecar(out + "/front.json")["reduced"], reduced)
-            has = "unknowns", "unknowns_drawn", "stiffness_is_constant"
-            there = (2, 6, False) if drawn == "orbit" else (1, 2, True)
-            self.assertEqual(tuple(reduced[name] for name in has), there)
-            found = "dimension" if drawn == "orbit" else "constant_stiffness"
-            self.assertEqual([note["name"] for note in reduced["reductions"]], ["pins", found])
+            found = [reduced[k] for k in ("unknowns", "unknowns_drawn", "stiffness_is_constant")]
+            found += [note["name"] for note in reduced["reductions"]]
+            orbit, line = [2, 6, False, "pins", "dimension"], [1, 2, True, "pins", "constant_stiffness"]
+            self.assertEqual(found, orbit if drawn == "orbit" else line)
             self.near(reduced["omega_max"], 10, 1e-9)
             self.assertEqual((reduced["parts"], reduced["unstable_directions"]), (1, 0))
 
@@ -232,9 +231,8 @@ class Charts(Programs):
         )
         self.assertEqual(tight["steps"], loose["steps"])
         self.assertGreater(tight["newton_iterations"], loose["newton_iterations"])
-        damped, undamped = (
-            rows("generalized_alpha", f"--spectral-radius {part}")[5] for part in "01"
-        )
+        alpha = "generalized_alpha"
+        damped, undamped = (rows(alpha, f"--spectral-radius {part}")[5] for part in "01")
         self.assertGreater(damped["error_energy"], 10 * undamped["error_energy"])
         plain, detecting = (
             {row["method"]: row["order_mean"] for row in rows(both, more, "fpu --until 20")
