@@ -46,4 +46,16 @@ BOOST_AUTO_TEST_CASE(a_motion_is_its_own_mirror_image) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(implicit_steps_are_the_same_too) {
+  const Scene cloth = draw("cloth", {{"nodes", 7}});
+  for (const char* name : {"implicit_euler", "semi_implicit_euler"}) {
+    const auto end = [&](const Reductions& reductions) {
+      return nodes_after(cloth, reductions, method_named(name), 5e-3, 0.1);
+    };
+    // Solved to 1e-12 of a step.
+    const double apart = farthest(end({}), end(Reductions::only({})));
+    BOOST_TEST(apart / farthest(end({}), cloth.nodes) < 1e-9, name);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
