@@ -85,8 +85,8 @@ class Charts(Programs):
             reduced = origin["reduced"]
             self.assertEqual(sidecar(out + "/front.json")["reduced"], reduced)
             found = [reduced[k] for k in ("unknowns", "unknowns_drawn", "stiffness_is_constant")]
-            found += [note["name"] for note in reduced["reductions"]]
-            orbit, line = [2, 6, False, "pins", "dimension"], [1, 2, True, "pins", "constant_stiffness"]
+            found += [note["name"] for note in reduced["reductions"][1:]]
+            orbit, line = [2, 6, False, "dimension"], [1, 2, True, "constant_stiffness"]
             self.assertEqual(found, orbit if drawn == "orbit" else line)
             self.near(reduced["omega_max"], 10, 1e-9)
             self.assertEqual((reduced["parts"], reduced["unstable_directions"]), (1, 0))
