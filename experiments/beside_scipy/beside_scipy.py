@@ -53,10 +53,10 @@ def draw(folder):
     runs = read(folder)
     about = read_facts(folder / "runs.json")
     sheet = Sheet(LEFT + len(runs) * PANEL + (len(runs) - 1) * GAP + 0.25, TOP + HEIGHT + BOTTOM)
-    sheet.text(0.25, 0.28, "How long a Python user waits, to the same error", size=14, weight="bold",
-               va="center")  # fmt: skip
-    sheet.text(0.25, 0.57, f"time of a run against the error of positions at its end; {about['processor']},"
-               " one core", size=10, color=FAINT, va="center")  # fmt: skip
+    title = "How long a Python user waits, to the same error"
+    words = "time of a run against the error of positions at its end"
+    processor = f"{about['processor']}, one core"
+    sheet.head(0.25, (0.28, 14, title), (0.57, 10, f"{words}; {processor}"))
     lines = {}
     for number, ((problem, unknowns), ways) in enumerate(runs.items()):
         axes = sheet.axes(LEFT + number * (PANEL + GAP), TOP, PANEL, HEIGHT)

@@ -19,7 +19,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from measurements import parse, read_facts, read_rows
 from sheet import Sheet, main
-from style import FAINT, INK, number, power_of_ten
+from style import INK, number, power_of_ten
 
 KINDS = {"explicit": "#D55E00", "implicit": "#0072B2", "split": "#009E73"}
 TITLES = {
@@ -288,9 +288,8 @@ def draw_header(sheet, family, until, kinds):
     """Title, subtitle and the key."""
     words = FAMILIES.get(family, (family, ""))[0]
     end = "" if until is None else f", to T = {number(until)} s"
-    sheet.text(0.15, 0.25, f"The fastest method: {words}{end}", size=14, weight="bold", va="center")
     subtitle = "×: how many times slower the next method is, the deeper the colour the more"
-    sheet.text(0.15, 0.54, subtitle, size=10, color=FAINT, va="center")
+    sheet.head(0.15, (0.25, 14, f"The fastest method: {words}{end}"), (0.54, 10, subtitle))
     there = [kind for kind in KINDS if any(kind in times for times in kinds.values())]
     keys = [Patch(facecolor=mixed(KINDS[kind], 0.7), label=TITLES[kind]) for kind in there]
     line = Line2D([], [], label="explicit and implicit equally fast", **BORDER)

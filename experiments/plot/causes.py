@@ -15,8 +15,8 @@ WHERE_AT = 2.75
 
 
 def threshold(sweep, cause):
-    """The value at which a sweep starts to fail, if runs of this cause are at one end of it: ("≥",
-    value) or ("≤", value); ("", value) if good runs are on both sides."""
+    """The value at which a sweep starts to fail: ("≥", value) or ("≤", value) if runs of this cause
+    are at one end of it. ("", value) if good runs are on both sides."""
     values = [run.value for run in sweep if run.failure == cause]
     good = [run.value for run in sweep if not run.failure]
     if min(values) > max(good):
@@ -27,8 +27,8 @@ def threshold(sweep, cause):
 
 
 def where(groups, cause, named):
-    """The values of the knobs, in words, at which methods with some points fail for a cause: the
-    least and the largest of their limits, with or without the methods' names."""
+    """The values of the knobs, in words, at which methods with some points fail for a cause. Named
+    are the least and the largest limit, with or without their methods."""
     ends = {}
     for knob, group in groups.items():
         symbol = KNOBS.get(knob, ("", knob))[1]
@@ -62,8 +62,8 @@ def shortening(names):
 
 
 def lines(groups):
-    """The lines of the strip: the cause, the names of its methods and what is said of it, in words
-    from the fullest to the shortest."""
+    """The lines of the strip: the cause, the names of its methods, and sentences on it from the
+    fullest to the shortest."""
     sweeps = [sweep for group in groups.values() for sweep in group]
     methods = {}
     for sweep in sweeps:

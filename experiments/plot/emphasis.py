@@ -22,8 +22,8 @@ PALE_INK = 0.15
 
 @dataclass(frozen=True)
 class Stroke:
-    """How one line is drawn: keyword arguments of matplotlib for the line and its markers, and the
-    size in points and opacity of its label; no size where it has none. `ink` is how much a label of
+    """How one line is drawn: keyword arguments of matplotlib for the line and its markers, size in
+    points and opacity of its label. Without a label it has no size. `ink` is how much a label of
     another line minds hiding it."""
 
     color: str
@@ -85,8 +85,8 @@ class Everything:
 
 
 def is_near(view, sweep):
-    """Whether some run of the sweep, of an error that matters, takes no more than NEAR times as long
-    as the fastest of the view with that error or a smaller one."""
+    """Whether some run of the sweep, of an error that matters, is near the front of the view. It
+    takes at most NEAR times as long as the fastest with that error or a smaller one."""
     good = [(view.drawn_error(run), run.time) for run in view.runs if not run.failure]
     return any(
         error <= MATTERS and time <= NEAR * min(other for e, other in good if e <= error)

@@ -16,9 +16,8 @@ KEY_LINE = 0.3
 
 @dataclass(frozen=True)
 class Cells:
-    """Where the cells of a table are, in inches: the accuracies, where the first column begins, how
-    wide one is, how high a row, how deep in it the names and the times are, and how large a name in
-    two lines may be."""
+    """The accuracies of a table, and its measures in inches: left end and width of the first
+    column, height of a row, depths of names and times in it, size of a name in two lines."""
 
     accuracies: tuple
     left: float
@@ -117,8 +116,8 @@ def draw_cells(sheet, top, row, cells):
 
 
 def sundials_in_words(row):
-    """How many times as long the best of SUNDIALS takes, as median, and what more there is to say
-    of it: from least to most, and below which accuracy there is none."""
+    """How many times as long the best of SUNDIALS takes, as median. Also words on the least and the
+    most, and on the accuracy below which there is none."""
     ratios = row.ratios.values()
     if not ratios:
         return "", []

@@ -3,11 +3,22 @@
 import csv
 import json
 import math
+import sys
 from contextlib import contextmanager
 
 
 class BadInput(Exception):
     """A measurement file that cannot be read; the message is one sentence."""
+
+
+def status_of(work, *arguments):
+    """The exit status of a script with this work: 2, after a sentence, where a file is bad."""
+    try:
+        work(*arguments)
+    except BadInput as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
 
 
 @contextmanager

@@ -35,8 +35,8 @@ def kinds(runs):
 
 
 def strong_methods(view):
-    """The names of the methods that stand out in a record.View, at most MOST: those of its front,
-    the coarsest accuracy first, then the best of each kind that has none among them. Where no more
+    """The names of the methods that stand out in a record.View, at most MOST. First are those of
+    its front, from the coarsest accuracy on, then the best of each kind without one. Where no more
     than MOST methods have a point at all, these are all of them."""
     runs = view.runs
     strong = list(dict.fromkeys(point.method for point in view.front))

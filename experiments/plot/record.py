@@ -90,10 +90,10 @@ class FrontPoint:
 class View:
     """The runs of a study by one of their errors.
 
-    front: the points of its front, from coarse to fine, none where no method may be chosen by this
-    error; ranked: by accuracy, 1e-1, ... 1e-9, the fastest run of each method that reaches it, the
-    fastest first; staircase: the runs that no run beats in both time and error, from coarse to fine;
-    floor: the least error that means anything, with its words, None where there is no such limit;
+    front: its points from coarse to fine; none where no method may be chosen by this error.
+    ranked: by accuracy, 1e-1, ... 1e-9, the fastest run of each method, the fastest first.
+    staircase: the runs that no run beats in both time and error, from coarse to fine.
+    floor: the least error that means anything, with its words; None where there is no such limit.
     chaotic_below: the error below which rounding decides.
     """
 
@@ -121,9 +121,9 @@ class View:
 
 @dataclass(frozen=True)
 class Record:
-    """What is known of a study: its scene and end [s] (None where unknown), by which of the `views`
-    accuracy is judged, the sentences that a reader must know before the errors, and the rows of the
-    judged front as chart.json has them."""
+    """The facts of a study: its scene, its end [s] (None where unknown), and the one of its `views`
+    by which accuracy is judged. `caveats` are for a reader to know before the errors; `rows` are
+    those of the judged front, as chart.json has them."""
 
     scene: str
     until: float | None

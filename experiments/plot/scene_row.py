@@ -13,11 +13,10 @@ DECADES = tuple(10.0**-digit for digit in range(1, 10))
 
 @dataclass(frozen=True)
 class Row:
-    """A scene: its title, how many nodes and springs it has, its end [s] and how many steps Verlet
-    takes to it at least (None where that is not known); by accuracy the fastest point, how many
-    times as long the best of SUNDIALS and, where it is known, the next method take; the kinds of
-    methods, how many they are, the processor, the accuracies that were asked for, and whether they
-    are those of the energy."""
+    """A scene: its title, nodes, springs, end [s], and the least number of Verlet's steps to it
+    (None where that is not known). By accuracy: the fastest point, how many times as long the best
+    of SUNDIALS takes, and the next method where it is known. Of the study: kinds and number of
+    methods, the processor, the accuracies asked for, and whether they are those of the energy."""
 
     title: str
     nodes: int

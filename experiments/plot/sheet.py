@@ -6,7 +6,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from measurements import BadInput
+from measurements import status_of
 from style import FAINT, GRID, INK, use_style
 
 DPI = 160
@@ -98,13 +98,8 @@ class Sheet:
 def main(draw):
     """The call of a script that draws what lies in a folder: draw(folder) of the one that the command
     line names. Ends the process, with status 2 where a file cannot be read."""
-    script = os.path.basename(sys.argv[0])
-    problem = f"Usage: {script} DIR"
     if len(sys.argv) == 2:
         use_style()
-        try:
-            sys.exit(draw(Path(sys.argv[1])))
-        except BadInput as error:
-            problem = error
-    print(problem, file=sys.stderr)
+        sys.exit(status_of(draw, Path(sys.argv[1])))
+    print(f"Usage: {os.path.basename(sys.argv[0])} DIR", file=sys.stderr)
     sys.exit(2)

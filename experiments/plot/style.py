@@ -135,8 +135,8 @@ def use_style():
 
 
 def log_ticks(axis, most=8, words=None, **places):
-    """Ticks at the decades of a logarithmic axis or at these places between them, no more than so
-    many; words make words of numbers, by default powers of ten."""
+    """At most so many ticks at the decades of a logarithmic axis, or at these places between them.
+    `words` makes words of numbers, by default powers of ten."""
     words = words or power_of_ten
     axis.set_major_locator(ticker.LogLocator(numticks=most, **places))
     axis.set_minor_locator(ticker.NullLocator())

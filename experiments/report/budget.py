@@ -11,8 +11,8 @@ LEAST_FRAMES_AND_RUNS = ((60, 20), (30, 8), (16, 4), (8, 2), (2, 1))
 
 
 def kept_frames(count, longest, limit):
-    """The numbers of the frames that are kept of a run's `count`, where the longest run has
-    `longest` and keeps `limit`: every run's at the same places, and its first and last."""
+    """The numbers of the frames that are kept of a run's `count`: its first and last, and others at
+    the same places in every run. The longest run has `longest` and keeps `limit`."""
     places = np.rint(np.linspace(0, longest - 1, min(max(limit, 2), longest))).astype(int)
     return sorted({*(int(place) for place in places if place < count), count - 1})
 

@@ -21,8 +21,8 @@ def index_blob(indices):
 
 
 def quantised(positions, low, size):
-    """Positions (frames, nodes, 3) [m] as whole steps of size / 65535 from `low`, uint16, and
-    whether some had to be moved into the box; what is no number goes to its lower corner."""
+    """Positions (frames, nodes, 3) [m] as whole steps of size / 65535 from `low`, uint16. Also
+    whether some had to be moved into the box, to whose lower corner goes what is no number."""
     steps = (np.asarray(positions, float) - low) * (STEPS / size)
     outside = ~((steps >= -0.5) & (steps <= STEPS + 0.5))
     steps = np.nan_to_num(steps, nan=0.0, posinf=STEPS, neginf=0.0)

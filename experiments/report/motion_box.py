@@ -13,8 +13,8 @@ BELIEVED = 10
 
 
 def bounds(motion, reach=math.inf):
-    """The least and the largest coordinates (3,) that are numbers, over all frames in which every
-    node is within `reach` [m] of the first frame's middle in each coordinate."""
+    """The least and the largest coordinates (3,) that are numbers. Frames count in which every node
+    is within `reach` [m] of the first frame's middle in each coordinate."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     middle = None
     for frame in range(len(motion.times)):

@@ -11,7 +11,7 @@ import tempfile
 from answers import answers, answers_note
 from background_part import left_out_part, provenance_part, reference_part, study_notes
 from commands import page_command
-from measurements import BadInput
+from measurements import BadInput, status_of
 from methods_part import methods_part
 from motion_part import motion_part
 from page import html
@@ -88,15 +88,12 @@ def main(arguments):
         print("Usage: report.py DIR", file=sys.stderr)
         return 2
     directory = arguments[0]
+    path = os.path.join(directory, "report.html")
     try:
-        write_whole(os.path.join(directory, "report.html"), page_of(directory))
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
+        return status_of(lambda: write_whole(path, page_of(directory)))
     except (AttributeError, TypeError) as error:
         print(f"{directory}: a .json file is not as qddot writes it: {error}.", file=sys.stderr)
         return 2
-    return 0
 
 
 if __name__ == "__main__":

@@ -6,17 +6,13 @@ over nodes, on wide lines of theory's slopes. Below, springs a second against wh
 processor allow, the memory of a step, and the exponents against theory's.
 """
 
-import csv
-import json
-import sys
-from pathlib import Path
-
 import numpy as np
 from matplotlib import ticker
 
 from labels import Ink, line_label, move_labels
-from sheet import Sheet
-from style import FAINT, GRID, INK, Family, Look, decades, power_of_ten, seconds, use_style
+from measurements import read_facts, read_table
+from sheet import Sheet, main
+from style import FAINT, GRID, INK, Family, Look, decades, power_of_ten, seconds
 
 WIDTH, HEIGHT = 13.2, 9.3
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.95, 1.5, 3.9, 3.4
@@ -61,8 +57,7 @@ LINEAR = (lambda n: n, "n")
 
 def read(path):
     """The rows of a table, numbers as such where they are some."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_table(path)
     for row in rows:
         for name, value in row.items():
             try:
@@ -282,34 +277,27 @@ def draw_exponents(sheet, rows):
     axes.set_xlabel("with 95 %; black: theory", fontsize=10)
 
 
-def main(folder):
+def draw(folder):
     """Draws the picture."""
-    use_style()
-    folder = Path(folder)
-    origin = json.loads((folder / "scaling.json").read_text(encoding="utf-8"))
+    origin = read_facts(folder / "scaling.json")
     rows = read(folder / "scaling.csv")
     sheet = Sheet(WIDTH, HEIGHT)
-    title = "How the cost of a step grows"
-    sheet.text(0.2, 0.3, title, size=15, weight="bold", va="center", color=INK)
     largest = max(row["nodes"] for row in rows)
     smallest = min(row["nodes"] for row in rows)
     words = (
         f"{smallest:,.0f} to {largest:,.0f} nodes, one core of {origin['cpu']}; three unknowns a "
         "node, the lattice a cube"
     )
-    sheet.text(0.2, 0.62, words, size=10, color=FAINT, va="center")
-    words = "wide and faint: how theory lets each phase grow, through its last point"
-    sheet.text(0.2, 0.86, words, size=10, color=FAINT, va="center")
+    theory = "wide and faint: how theory lets each phase grow, through its last point"
+    title = "How the cost of a step grows"
+    sheet.head(0.2, (0.3, 15, title), (0.62, 10, words), (0.86, 10, theory))
     sheet.rule(1.04)
     draw_scenes(sheet, rows, origin)
     draw_roofline(sheet, read(folder / "roofline.csv"))
     draw_memory(sheet, rows)
     draw_exponents(sheet, read(folder / "exponents.csv"))
-    for extension in ("png", "svg"):
-        sheet.save(str(folder / f"scaling.{extension}"))
+    sheet.save_as(folder, "scaling")
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("Usage: scaling.py DIR")
-    main(sys.argv[1])
+    main(draw)

@@ -234,9 +234,8 @@ def main(view, scene, h, until, out):
     runs += [simulate(name, looks[name], name, scene, step, step, end) for name in METHODS]
     sheet = Sheet(WIDTH, HEIGHT)
     title = f"{shown(scene)}: {len(METHODS)} methods at one step size, h = {h} s"
-    sheet.text(0.15, 0.25, title, size=14, weight="bold", va="center")
     exact = f"exact: {EXACT} at h / {EXACT_STEPS}"
-    sheet.text(0.15, 0.54, exact, size=10, color=FAINT, va="center")
+    sheet.head(0.15, (0.25, 14, title), (0.54, 10, exact))
     VIEWS[view](sheet, runs)
     draw_energy(sheet, runs)
     sheet.save(out)

@@ -11,7 +11,6 @@ be read is left out and counted.
 import json
 import math
 import os
-import sys
 from dataclasses import dataclass
 
 import measurements
@@ -19,7 +18,7 @@ import scene_row
 from measurements import BadInput, interrupted_by, parse
 from names import one_line
 from record import FrontPoint, read_record
-from style import use_style
+from sheet import main
 from sweep_picture import Study, draw, sentences
 
 MOST = 60
@@ -28,9 +27,8 @@ JUDGES = ("position", "energy")
 
 @dataclass
 class Scene:
-    """The rows of one scene: its folder's name, what its errors are of, the accuracies, the fastest
-    points and how many times as long the next methods take, by accuracy, and where each point
-    stands in the file."""
+    """The rows of one scene: its folder's name, the kind of its errors, accuracies. By accuracy:
+    the fastest point, how many times as long the next method takes, and the line in the file."""
 
     folder: str
     judge: str
@@ -147,8 +145,8 @@ def read_row(directory, scene):
 
 
 def read_rows(folder, path, scenes):
-    """The rows of the first scenes that can be read, MOST of them, and how many before could not;
-    raises BadInput where fastest.csv names a method that its scene's folder has no run of."""
+    """The rows of the first scenes that can be read, MOST of them, and how many before could not.
+    Raises BadInput where fastest.csv names a method of which its scene's folder has no run."""
     rows, unreadable = [], 0
     for scene in scenes:
         if len(rows) == MOST:
@@ -189,22 +187,10 @@ def read(folder):
     )
 
 
-def main(arguments):
-    """Draws the picture into the folder; returns the exit status."""
-    if len(arguments) != 1:
-        print("Usage: sweep.py DIR", file=sys.stderr)
-        return 2
-    [folder] = arguments
-    use_style()
-    try:
-        sheet = draw(read(folder))
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
-    for extension in ("png", "svg"):
-        sheet.save(os.path.join(folder, f"fastest.{extension}"))
-    return 0
+def draw_folder(folder):
+    """Draws the picture into the folder."""
+    draw(read(folder)).save_as(folder, "fastest")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(draw_folder)

@@ -43,9 +43,9 @@ ENDS = "_-., =+"
 
 @dataclass(frozen=True)
 class Study:
-    """What is drawn: the rows, how many scenes there are in all and how many of these could not be
-    read, sentences on where the fastest method changes, whether times are work times costs, the
-    processor, and by what the sweep was interrupted, if it was."""
+    """The contents of a picture: the rows, the number of scenes and of those that cannot be read,
+    and sentences on where the fastest method changes. Also whether times are work times costs, the
+    processor, and what interrupted the sweep, if anything did."""
 
     rows: list
     scenes: int

@@ -3,8 +3,9 @@
 Call: symmetric_roots.py DIR, the folder with roots.csv of the program symmetric_roots; writes
 DIR/symmetric_roots.png and DIR/symmetric_roots.svg. A dot is a formula, a colour its number of
 steps. The left panel shows the phase error over the limit of h w, the middle one the gap between
-roots over the same limit, the right one the energy error of an orbit over the gap. A line is the
-best of all formulas with that limit or a larger one; in the left panel, of those with a large gap.
+roots over the same limit. The right one shows the energy error of an orbit over the gap. A line
+is the best of all formulas with that limit or a larger one; in the left panel, of those with a
+large gap.
 """
 
 import sys

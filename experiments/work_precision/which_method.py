@@ -10,7 +10,7 @@ import sys
 
 import scene_row
 from fastest_table import Cells, draw_cells, draw_heads, draw_key, sundials_in_words
-from measurements import BadInput
+from measurements import status_of
 from names import shown
 from record import read_record
 from sheet import Sheet
@@ -111,12 +111,7 @@ def main(arguments):
         return 2
     picture, *directories = arguments
     use_style()
-    try:
-        draw([read(directory) for directory in directories]).save(picture)
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+    return status_of(lambda: draw([read(directory) for directory in directories]).save(picture))
 
 
 if __name__ == "__main__":

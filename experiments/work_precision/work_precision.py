@@ -1,12 +1,12 @@
 """Draws the work-precision chart of one experiment: time of a run against error reached.
 
-Call: work_precision.py DIR [--all]. Reads points.csv and chart.json in DIR. Writes chart and chart_energy there, as .png and .svg. chart is over the position error. If
-the end is beyond the horizon of a chaotic motion, it is over the kind of error that still means
-something. chart_energy is over the energy error. Up to a dozen methods stand out; others are pale
-and failures are counted. --all names every method and shows its failed runs.
+Call: work_precision.py DIR [--all]. Reads points.csv and chart.json in DIR. Writes chart and
+chart_energy there, as .png and .svg. chart is over the position error. If the end is beyond the
+horizon of a chaotic motion, it is over the kind of error that still means something. chart_energy
+is over the energy error. Up to a dozen methods stand out; others are pale and failures are counted.
+--all names every method and shows its failed runs.
 """
 
-import os
 import sys
 
 from matplotlib.lines import Line2D
@@ -16,11 +16,11 @@ import failures
 from band import draw_band
 from chart import Chart
 from emphasis import Everything, Prominent
-from measurements import BadInput
+from measurements import status_of
 from names import shown
 from record import read_record, sweeps
 from sheet import Sheet
-from style import FAINT, STOCK, number, use_style
+from style import STOCK, number, use_style
 
 WIDTH = 10.0
 MARGIN = 0.15
@@ -48,8 +48,7 @@ def draw_header(sheet, study, view):
     """Title and subtitle; and what a reader must know before the errors."""
     end = "T" if study.until is None else f"T = {number(study.until)} s"
     title = f"{shown(study.scene)}: time of a run against {view.quantity.title} {end}"
-    sheet.text(MARGIN, 0.25, title, size=14, weight="bold", va="center")
-    sheet.text(MARGIN, 0.54, view.subtitle, size=10, color=FAINT, va="center")
+    sheet.head(MARGIN, (0.25, 14, title), (0.54, 10, view.subtitle))
     for line, words in enumerate(study.caveats):
         top = 0.83 + HORIZON * line
         sheet.text(MARGIN, top, words, size=10, color=WARNING, va="center")
@@ -148,6 +147,13 @@ def pictures(study):
         yield "chart_energy", [study.views["energy"]]
 
 
+def draw_all(directory, everything):
+    """Draws the charts of the directory."""
+    study = read_record(directory)
+    for name, views in pictures(study):
+        draw(study, views, everything).save_as(directory, name)
+
+
 def main(arguments):
     """Draws the charts of the directory named on the command line; returns the exit status."""
     everything = "--all" in arguments
@@ -155,18 +161,8 @@ def main(arguments):
     if len(directories) != 1 or directories[0].startswith("-"):
         print("Usage: work_precision.py DIR [--all]", file=sys.stderr)
         return 2
-    directory = directories[0]
     use_style()
-    try:
-        study = read_record(directory)
-        for name, views in pictures(study):
-            sheet = draw(study, views, everything)
-            for extension in ("png", "svg"):
-                sheet.save(os.path.join(directory, f"{name}.{extension}"))
-    except BadInput as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+    return status_of(draw_all, directories[0], everything)
 
 
 if __name__ == "__main__":
