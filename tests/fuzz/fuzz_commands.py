@@ -28,6 +28,7 @@ from limited_run import become_nobody, environment_of, limit_this_process, run, 
 from random_commands import Commands, methods_of, options_of
 from random_scenes import random_scene
 from sandbox import Sandbox
+from studies import COMMANDS
 
 # How often each is drawn: what takes longer is drawn less.
 DRAWN = {
@@ -36,6 +37,7 @@ DRAWN = {
     2: "solvers symmetric_roots sweep", 0.5: "scaling verdicts bench advice",
 }  # fmt: skip
 PROGRAMS = {name: often for often, names in DRAWN.items() for name in names.split()}
+PROGRAMS |= {name: 1 for name in COMMANDS if name not in PROGRAMS}
 
 
 def arguments_of(caller):

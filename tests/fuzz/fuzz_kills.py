@@ -27,7 +27,7 @@ import time
 
 import killed_sweeps
 from limited_run import environment_of, limit_this_process, run, spelled
-from studies import LONG_STUDIES, REFERENCES_BY_THE_CLOCK, write_scenes
+from studies import LONG_STUDIES, REFERENCES_BY_THE_CLOCK, STUDIES, write_scenes
 from written_tables import differences, faults, json_of
 
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
@@ -58,7 +58,8 @@ class Study:
 
     def __init__(self, programs, name, place):
         self.name, self.place = name, os.path.join(place, name)
-        self.argv = [os.path.join(programs, name), *LONG_STUDIES[name].split(), "--out", "results"]
+        words = (LONG_STUDIES.get(name) or STUDIES[name]).split()
+        self.argv = [os.path.join(programs, name), *words, "--out", "results"]
         self.whole = self._results("whole")
         self.first = self._run("whole")
         if name in REFERENCES_BY_THE_CLOCK and self.first.status == 0:
