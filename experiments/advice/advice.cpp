@@ -12,8 +12,8 @@
 //  2. cases.csv has, for each case, the answer (method, knob, error estimate), its error, the best
 //     run in hindsight, and the seconds of all of these. Cases without a reference are reported and
 //     left out.
-//  3. worth.csv says how often claims and error bars hold, how wide the bars are, how near the
-//     choice is to the best run, and how long everything takes.
+//  3. worth.csv says how often claims and error bars hold and how wide the bars are. It also says
+//     how near the choice is to the best run, and how long everything takes.
 //
 // The option --step-costs replaces all this: it writes step_costs.csv, the times of a step of each
 // method, which forecasts begin with.
@@ -30,11 +30,8 @@
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::judged_advice;
-  Program p({.name = "advice",
-             .summary = "Measures how good answers are that were asked for by their accuracy.",
-             .has_threads = true,
-             .has_resume = true,
-             .has_shares = true});
+  Program p("advice", "Measures how good answers are that were asked for by their accuracy.",
+            {has_threads, has_resume, has_shares});
   auto cases = p.whole("--cases", 400, "number of cases").within(1, 100000);
   auto first = p.whole("--first", 11000000,
                        "the number of the first case; the search was tuned on cases below 11000000")

@@ -58,9 +58,7 @@ const Columns<Advice>& advice_columns() {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::advise_program;
-  Program p({.name = "advise",
-             .summary = "Says which integrator to take for a scene and an accuracy.",
-             .has_threads = true});
+  Program p("advise", "Says which integrator to take for a scene and an accuracy.", {has_threads});
   auto scene = p.scene();
   auto until = p.until();
   auto accuracies =
@@ -92,7 +90,6 @@ int main(int argc, char** argv) {
     if (csv) {
       for (const Advice& advice : all.for_each) advice_columns().write_row(*csv, advice);
       nlohmann::json origin = p.origin(subject);
-      origin["until"] = subject.until;
       origin["accuracy_of"] = of->empty() ? "positions" : *of;
       origin["runs"] = all.runs;
       origin["seconds"] = all.seconds;

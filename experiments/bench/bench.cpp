@@ -5,16 +5,16 @@
 //   bench cloth@0.5 my.toml --point-limit 5 --out results/mine
 //
 //  1. Each peer is set up as its users would, compiled with the same flags, and runs over its
-//     tolerances or step sizes. It runs with the f that a user writes, a loop over springs (in
-//     Python NumPy with a sparse matrix), and with ours, if it can take one. It gets the scene
-//     without reductions: only pinned nodes are no unknowns.
+//     tolerances or step sizes. It runs with the f that a user writes: a loop over springs, in
+//     Python NumPy with a sparse matrix. It also runs with ours, if it can take one. It gets the
+//     scene without reductions: only pinned nodes are no unknowns.
 //  2. Our explicit methods run on the smallest system of the scene (reduced: all), and on the one
 //     that the peers get (pins).
 //  3. A ratio is the time of the peer's fastest run that reaches the accuracy, over that of our
 //     fastest run with at most the same error. If the peer was over budget before, its time so far
 //     over our fastest run is a lower bound of the ratio. Times are the processor's.
-//  4. A peer that takes the same steps as one of our methods, as LAMMPS and verlet, is compared at
-//     one step size: time of a step, springs a second, and distance of the ends.
+//  4. Some peers take the same steps as one of our methods, as LAMMPS and verlet. They are compared
+//     at one step size: time of a step, springs a second, and distance of the ends.
 //  5. bench.csv has every point, ratios.csv the ratios with their two runs, same_steps.csv the
 //     results of step 4. `left_out` in their sidecars says which peers are missing and why.
 #include <filesystem>
@@ -25,8 +25,6 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/scene_choice.hpp"
-#include "qddot/integrators/registry.hpp"
-#include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::bench {
 namespace {
@@ -37,29 +35,21 @@ std::string force_library() {
   return std::filesystem::exists(FORCE_LIBRARY, error) ? FORCE_LIBRARY : "";
 }
 
-void require_method(const std::string& name, const std::string& option) {
-  if (find_method(name)) return;
-  throw InvalidInput(
-      fmt::format("{}: {} is not a method; allowed are {}", option, name, method_names()));
-}
-
 }  // namespace
 }  // namespace qddot::bench
 
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::bench;
-  Program p(
-      {.name = "bench",
-       .summary =
-           "Measures how many times as long as our methods other solvers take to an accuracy.",
-       .has_resume = true});
+  Program p("bench",
+            "Measures how many times as long as our methods other solvers take to an accuracy.",
+            {has_resume});
   std::vector<std::string> scenes = {"cloth@0.1", "cloth@0.5", "chain", "lattice"};
   p.bind("scenes", scenes, "generators' names or scene files; @T after a name runs it to T s",
          true);
   auto methods = p.words("--methods", explicit_methods(),
                          "a,b,...: our methods; naming the most accurate first saves time")
-                     .check_each(require_method);
+                     .check_each(method_named);
   auto beginnings = p.words(
       "--peers", "a,b,...: the other solvers, by the beginnings of their names (default: all)");
   auto repeats =

@@ -1,8 +1,8 @@
-// Bullet's soft body. Its links correct positions: after the free motion x* = q + h (v + h g), each
+// Bullet's soft body. Its links correct positions after the free motion x* = q + h (v + h g). Each
 // link in turn moves its two ends by s (l0 - l)/(1/m_a + 1/m_b), over their masses, along the link.
 // Then v = (x - q)/h.
-// One round with s = k h^2 (1/m_a + 1/m_b) gives the ends the momentum h k (l0 - l) of the spring,
-// so that the motion converges with order 1. Bullet computes l0 - l as (l0^2 - l^2)/(l0^2 + l^2) l,
+// One round with s = k h^2 (1/m_a + 1/m_b) gives the ends the momentum h k (l0 - l) of the spring.
+// So the motion converges with order 1. Bullet computes l0 - l as (l0^2 - l^2)/(l0^2 + l^2) l,
 // which is right to first order in the strain, in floats.
 #include "experiments/bench/peers.hpp"
 

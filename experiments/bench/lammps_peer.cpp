@@ -128,8 +128,8 @@ std::string lammps_data(const Scene& scene) {
 
 // The input script: velocity Verlet over the atoms that are not pinned.
 // Units lj have no factors between force, mass and time. `once yes` rebuilds no list, as bonds
-// never change and nobody looks for neighbours; so atoms need no ghosts, may leave the box and are
-// not sorted anew. Sorted once, with bonds kept at both ends (newton off) or another map they take
+// never change and nobody looks for neighbours. Atoms need no ghosts, may leave the box and are not
+// sorted anew. Sorted once, with bonds kept at both ends (newton off) or another map they take
 // as long, on cloth, lattice and meshes. Weights of 1 leave out lists that only pair forces read.
 std::string lammps_script(const Scene& scene, const LammpsWork& work) {
   const Eigen::Vector3d& g = scene.gravity;

@@ -30,7 +30,7 @@ class Peer {
   const std::string& name() const { return name_; }
   Knob knob() const { return knob_; }
 
-  // One run with the knob at `value` [s, or relative], over budget after `limit` seconds; a peer
+  // One run with the knob at `value` [s, or relative], over budget after `limit` seconds. A peer
   // that is slow to start may make and time several. Never throws what the solver throws.
   virtual Run run(const Problem& problem, ForceKind force, double value, double limit) = 0;
   // Values of the knob from coarse to fine.

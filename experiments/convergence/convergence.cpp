@@ -6,13 +6,13 @@
 //  1. The reference is work_precision's (reference.json, shared with it).
 //     Beyond the horizon of a chaotic motion nobody knows the positions, and nothing is run: each
 //     method has one row of empty fields.
-//  2. h starts where it resolves the fastest frequency at the start (h w = 1; a 16th of the run
-//     for implicit methods) and is halved until the error nears what the reference certifies, or
-//     a run takes longer than ten seconds.
+//  2. h starts where it resolves the fastest frequency at the start: h w = 1, or a 16th of the run
+//     for implicit methods. It is halved until the error nears what the reference certifies, or a
+//     run takes longer than ten seconds.
 //  3. order.csv holds the errors and log2 of the ratio of successive position errors, which tends
-//     to the order of the method as h -> 0. It is left empty where it would say something else: of
-//     errors above a tenth or within twenty times of what the reference certifies or the method
-//     rounds, and where the next order observed (or the one before) is more than a half away.
+//     to the order of the method as h -> 0. It is left empty for errors above a tenth, or within
+//     twenty times of what the reference certifies or the method rounds. It is empty too where the
+//     next order observed, or the one before, is more than a half away.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -120,10 +120,8 @@ void measure_orders(Study& study, Csv& csv, const Subject& subject,
 int main(int argc, char** argv) {
   using namespace qddot::convergence;
   using namespace qddot;
-  Program p({.name = "convergence",
-             .summary = "Measures the order of convergence of every fixed-step integrator.",
-             .has_threads = true,
-             .has_resume = true});
+  Program p("convergence", "Measures the order of convergence of every fixed-step integrator.",
+            {has_threads, has_resume});
   auto choice = p.scene();
   auto until = p.until();
   auto methods = p.methods("a,b,...: the methods, of fixed steps (default: all)");

@@ -4,8 +4,8 @@
 //   crossover --family frame --out results/frame
 //   crossover --family chain --ratios 1,1e3,1e6 --methods verlet,ida --out results/chain
 //
-//  1. Each ratio has a scene and a reference (agreed_reference) that is good to
-//     a tenth of the finest accuracy. It is kept in ratio_R/reference.json for the next time.
+//  1. Each ratio has a scene and a reference (agreed_reference) that is good to a tenth of the
+//     finest accuracy. It is kept in ratio_R/reference.json for the next time.
 //  2. Methods are measured as in work_precision, those first that were fast at the former ratio.
 //     SUNDIALS' stock variants are left out: they are slower than the same methods with the
 //     structure. A ladder ends early if the method will be 20 times slower than the fastest at each
@@ -64,11 +64,8 @@ std::vector<const Method*> competitors(const std::vector<std::string>& list,
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::crossover;
-  Program p({.name = "crossover",
-             .summary = "Measures from which stiffness on an implicit method is the fastest.",
-             .has_threads = true,
-             .has_resume = true,
-             .has_shares = true});
+  Program p("crossover", "Measures from which stiffness on an implicit method is the fastest.",
+            {has_threads, has_resume, has_shares});
   std::vector<std::string> families;
   for (const StiffFamily& f : stiff_families())
     families.push_back(fmt::format("{} ({})", f.name, f.summary));

@@ -32,9 +32,9 @@ struct Placing {
   std::array<const Point*, kinds.size()> of_kind{};
 };
 
-// Which runs need not be made where methods compete on one scene for the accuracies 1e-1, 1e-2, ...
-// 1e-6, as far as the reference is certain. As each method takes its points from coarse to fine, it
-// is known which need not be taken.
+// Tells which runs need not be made where methods compete on one scene for the accuracies 1e-1,
+// 1e-2, ... 1e-6, as far as the reference is certain. Methods take their points from coarse to
+// fine.
 class Pruning {
  public:
   static constexpr std::array accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
@@ -45,8 +45,8 @@ class Pruning {
 
   void take(const Point& point);
   // Whether finer points of the method than this one are of no interest. It has then reached the
-  // finest accuracy, or it would be too slow at each remaining one if its time grows by its order,
-  // time ~ error^(-1/order).
+  // finest accuracy, or would be too slow at each remaining one. Its time is taken to grow by its
+  // order, time ~ error^(-1/order).
   bool is_over(const Point& point) const;
   // Time [s] after which a run is too slow even at the finest accuracy; infinite if no method
   // reached that accuracy.

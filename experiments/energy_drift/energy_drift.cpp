@@ -1,5 +1,5 @@
-// The long-run energy error of every method: whether it stays bounded, drifts, is
-// dissipated, blows up or is nothing but round-off, over 10^5 to 10^7 steps.
+// The energy error of every method over 10^5 to 10^7 steps: whether it stays bounded, drifts, is
+// dissipated, blows up or is nothing but round-off.
 //
 //   energy_drift --scene cloth --out results/cloth
 //   energy_drift --scene orbit --step-size 0.01 --until 1e4 --methods verlet --out results/orbit
@@ -8,11 +8,11 @@
 //  1. Scales come from one accurate run: errors are (E(t) - E(0)) over the largest kinetic energy.
 //  2. Fixed-step methods take steps of H, adaptive ones run at each tolerance, all on one thread
 //     each, side by side on all cores. They are looked at after some thousands of steps in each
-//     octave of the run, drawn at random, so that no oscillation is in step with that. Implicit
+//     octave of the run. These are drawn at random: no oscillation is in step with them. Implicit
 //     stages are solved to 1e-9 (--solve-tolerance), so that what drifts is the method.
 //  3. Means over 64 blocks of time are fitted by a line and noise together with a random walk,
-//     coloured noise or a slow wave (energy_trend.hpp, block_fit.hpp); summary.csv has the slope
-//     with its 95 % interval and a verdict in words, or that the run is too short for one and which
+//     coloured noise or a slow wave (energy_trend.hpp, block_fit.hpp). summary.csv has the slope
+//     with its 95 % interval and a verdict in words. If the run is too short for one, it says which
 //     length would do. The program `verdicts` finds out how often that is right.
 //  4. tolerance.csv says how the error of adaptive methods follows rtol.
 #include <optional>
@@ -34,11 +34,9 @@ constexpr double standard_solve_tolerance = 1e-9;
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::energy_drift;
-  Program p(
-      {.name = "energy_drift",
-       .summary = "Finds out where each integrator's energy goes over a long run of one scene.",
-       .has_resume = true,
-       .has_shares = true});
+  Program p("energy_drift",
+            "Finds out where each integrator's energy goes over a long run of one scene.",
+            {has_resume, has_shares});
   auto scene = p.scene();
   auto step_size =
       p.number("--step-size",

@@ -13,11 +13,9 @@
 
 int main(int argc, char** argv) {
   using namespace qddot;
-  Program p(
-      {.name = "equilibrium",
-       .summary =
-           "Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
-       .has_threads = true});
+  Program p("equilibrium",
+            "Finds the stable equilibrium that a scene reaches downhill from where it is drawn.",
+            {has_threads});
   auto scene = p.drawn_scene();
   auto path = p.word("--final",
                      "CSV of all nodes at rest (or, with status 3, where the search ended), with "

@@ -5,11 +5,11 @@
 //   exchange --scene fpu --methods verlet,trbdf2 --h-omega 0.1,0.5,1 --until 400 --out results/fpu
 //
 //  1. w is the highest frequency at the start that the stiff springs (Scene::stiff_above) make by
-//     themselves, without the soft ones: in scene fpu it is its parameter `frequency`, as h w is
-//     meant there. A method's step is h = (h w)/w, all of the way: the motion is seen at
-//     multiples of h only, those nearest to multiples of --every.
-//  2. The reference is Kahan and Li's composition of order 8 at h w = 0.1, certified by how far
-//     Dormand and Prince's Nystrom pair 12(10) at rtol = 1e-12 is from it.
+//     themselves, without the soft ones. In scene fpu it is its parameter `frequency`. A method's
+//     step is h = (h w)/w, all of the way. So the motion is seen at multiples of h only, those
+//     nearest to multiples of --every.
+//  2. The reference is Kahan and Li's composition of order 8 at h w = 0.1. Its distance to Dormand
+//     and Prince's Nystrom pair 12(10) at rtol = 1e-12 certifies it.
 //  3. exchange.csv has the oscillatory energy of each stiff spring over time (stiff_energies.hpp),
 //     springs counted from 0 among the stiff ones, and their sum.
 //  4. summary.csv has, for each method and h w:
@@ -21,8 +21,8 @@
 //       tempo           the a for which I_j(t) is nearest to I_j,ref(a t): how fast they exchange
 //       misfit          the root mean square of what is left then
 //       verdict         in words; "as it should" is a tempo within 10 % and a misfit below 0.1
-//     What drives the exchange is the soft springs' slow motion, which may be chaotic: in scene fpu
-//     1 % more frequency moves I_j(t) by up to 0.06, so that a few per cent of tempo mean nothing.
+//     The soft springs' slow motion drives the exchange and may be chaotic. In scene fpu 1 % more
+//     frequency moves I_j(t) by up to 0.06, so a few per cent of tempo mean nothing.
 //     A run that fails has its outcome, and leaves the rest empty.
 #include <algorithm>
 #include <string>
@@ -66,9 +66,8 @@ void require_h_omegas(const std::vector<double>& h_omegas, const std::string& na
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::exchange;
-  Program p({.name = "exchange",
-             .summary = "Follows the energy that stiff springs exchange, by method and step size.",
-             .has_resume = true});
+  Program p("exchange", "Follows the energy that stiff springs exchange, by method and step size.",
+            {has_resume});
   auto scene = p.scene();
   auto methods =
       p.words("--methods",

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 
 #include <fmt/compile.h>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,11 @@ void Csv::field(std::string_view text) {
 void Csv::end_row() {
   text_.push_back('\n');
   row_is_empty_ = true;
+}
+
+std::vector<std::string> columns_in(const std::string& names) {
+  std::istringstream words(names);
+  return {std::istream_iterator<std::string>(words), {}};
 }
 
 std::string sidecar_of(const std::string& path) {

@@ -56,6 +56,9 @@ class Csv {
   bool row_is_empty_ = true;
 };
 
+// The names in a text such as "method h error".
+std::vector<std::string> columns_in(const std::string& names);
+
 // The sidecar X.json of a table X.csv.
 std::string sidecar_of(const std::string& path);
 
@@ -130,8 +133,8 @@ class Columns {
 // A table that a program wrote (see csv.hpp), read back: a header row, then rows of equal length.
 class WrittenTable {
  public:
-  // Throws InvalidInput if the file cannot be read, if a row has more or fewer fields than the
-  // header, or if a column of `needed` is missing. The sentence names the file and the problem.
+  // Throws InvalidInput if the file cannot be read, a row has more or fewer fields than the header,
+  // or a column of `needed` is missing. The sentence names the file and the problem.
   WrittenTable(const std::string& path, const std::vector<std::string>& needed);
 
   std::size_t size() const { return rows_.size(); }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/judgement.hpp"
@@ -143,21 +144,10 @@ nlohmann::json notes_on(const std::vector<Point>& points) {
 
 namespace {
 
-const std::vector<std::string> columns_read = {"method",
-                                               "value",
-                                               "outcome",
-                                               "t_reached",
-                                               "error_position",
-                                               "error_velocity",
-                                               "error_energy",
-                                               "error_energy_max",
-                                               "error_momentum_max",
-                                               "error_modal_shares",
-                                               "time_s",
-                                               "time_min_s",
-                                               "setup_s",
-                                               "steps",
-                                               "energy_growth"};
+const std::vector<std::string> columns_read = columns_in(
+    "method value outcome t_reached error_position error_velocity error_energy "
+    "error_energy_max error_momentum_max error_modal_shares time_s time_min_s setup_s steps "
+    "energy_growth");
 
 // The options of a study that decide how a method runs.
 constexpr std::array of_a_run = {"--no-reduce",  "--max-order",       "--stability-detection",
@@ -196,7 +186,7 @@ Point point_of(const WrittenTable& table, std::size_t row, const std::string& pa
 
 // The options as the study was given them, read as a command line is.
 void take_options(const nlohmann::json& given, MeasuredPoints& study) {
-  Program program({.name = "study", .summary = ""});
+  Program program("study", "");
   const auto scene = program.scene();
   const auto options = program.method_options();
   std::vector<std::string> words = {"study"};

@@ -25,6 +25,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, outcome, t_reached, counts, message,
 }  // namespace qddot
 
 namespace qddot::inline kit {
+
 // Converts a point to its record in a journal, with all its numbers, and back. point_of throws
 // nlohmann::json::exception for anything else.
 nlohmann::json record_of(const Point& point);

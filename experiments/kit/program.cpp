@@ -86,8 +86,8 @@ std::string shell_word(const std::string& word) {
   return text + "'";
 }
 
-Program::Program(const About& about)
-    : about_(about), app_(std::make_unique<CLI::App>(about.summary, about.name)) {}
+Program::Program(std::string name, const std::string& summary, SetOf<OptionGroup> groups)
+    : name_(std::move(name)), groups_(groups), app_(std::make_unique<CLI::App>(summary, name_)) {}
 
 Program::~Program() = default;
 
@@ -200,14 +200,14 @@ int Program::run(int argc, char** argv, const std::function<int()>& work) {
     for (const auto& table : tables_) files += (files.empty() ? "" : ", ") + table->file_;
     out("the folder for " + files);
   }
-  if (about_.has_threads) declare_threads();
-  if (about_.has_resume) {
+  if (groups_.has(has_threads)) declare_threads();
+  if (groups_.has(has_resume)) {
     flag("--resume",
          "go on with an interrupted run of the same command: measure only what is missing");
   }
-  if (about_.has_shares) declare_shares();
-  app_->set_version_flag("--version", fmt::format("{} of qddot {}, {}", about_.name,
-                                                  build_info::version, build_info::compiler));
+  if (groups_.has(has_shares)) declare_shares();
+  app_->set_version_flag("--version", fmt::format("{} of qddot {}, {}", name_, build_info::version,
+                                                  build_info::compiler));
   const auto force = flag("--force", "replace files that qddot did not write");
   const auto limit = number("--time-limit",
                             "seconds after which the program ends in order and keeps its results "
@@ -218,14 +218,14 @@ int Program::run(int argc, char** argv, const std::function<int()>& work) {
           .last();
   command_line_.assign(argv, argv + argc);
   try {
-    Interruptible run(about_.name);
+    Interruptible run(name_);
     try {
       parse(argc, argv);
     } catch (const CLI::Success& help) {
       return app_->exit(help);
     }
     if (force) allow_replacing();
-    start_progress(about_.name, form);
+    start_progress(name_, form);
     if (limit.is_given()) {
       require_positive(limit, "--time-limit", "the seconds that the program may take");
       run.end_after(limit);
@@ -261,7 +261,7 @@ void Program::require_alone(const std::string& option) const {
 }
 
 int Program::complain(const std::string& sentence, int status) const {
-  say(fmt::format("{}: {}", about_.name, in_one_line(sentence)));
+  say(fmt::format("{}: {}", name_, in_one_line(sentence)));
   return status;
 }
 
@@ -308,11 +308,7 @@ int Program::run_study(const nlohmann::json& about, const Shares& shares,
   if (study.is_share()) return study.conclude(study.falls_short() ? end_not_reached : done);
   const nlohmann::json origin = report(study);
   const int status = study.falls_short() ? end_not_reached : done;
-  for (const auto& table : tables_) {
-    nlohmann::json own = origin;
-    own.update(table->notes_);
-    study.complete(**table, std::move(own), status);
-  }
+  for (const auto& table : tables_) study.complete(**table, table->with_notes(origin), status);
   for (const auto& file : files_) study.complete(*file->file);
   return study.conclude(status);
 }
@@ -320,11 +316,7 @@ int Program::run_study(const nlohmann::json& about, const Shares& shares,
 int Program::write(const std::function<nlohmann::json()>& fill) {
   open_tables();
   const nlohmann::json origin = fill();
-  for (const auto& table : tables_) {
-    nlohmann::json own = origin;
-    own.update(table->notes_);
-    (*table)->commit(own);
-  }
+  for (const auto& table : tables_) (*table)->commit(table->with_notes(origin));
   return done;
 }
 
@@ -333,7 +325,7 @@ StudyCall Program::study_call() const {
   constexpr std::array other = {"--out",         "--scene",    "--resume",  "--force",
                                 "--time-limit",  "--progress", "--help",    "--version",
                                 "--list-shares", "--share",    "--journal", "--kept"};
-  StudyCall call{.program = about_.name,
+  StudyCall call{.program = name_,
                  .resumes = has("--resume"),
                  .lists_shares = has("--list-shares"),
                  .is_of_kept = has("--kept")};
@@ -348,7 +340,9 @@ StudyCall Program::study_call() const {
 nlohmann::json Program::origin() const { return provenance(command_line_); }
 
 nlohmann::json Program::origin(const Subject& subject) const {
-  return provenance(command_line_, subject.drawn, subject.start, subject.reduced);
+  auto json = provenance(command_line_, subject.drawn, subject.start, subject.reduced);
+  if (subject.until > 0) json["until"] = subject.until;
+  return json;
 }
 
 Subject subject_of(const SceneChoice& choice, const Argument<double>& until) {

@@ -15,6 +15,7 @@
 #include "experiments/kit/scene_choice.hpp"
 #include "experiments/kit/study.hpp"
 #include "experiments/kit/whole_file.hpp"
+#include "qddot/integrators/set_of.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/scene.hpp"
 
@@ -92,6 +93,11 @@ class Table {
 
  private:
   friend class Program;
+  nlohmann::json with_notes(nlohmann::json origin) const {
+    origin.update(notes_);
+    return origin;
+  }
+
   std::string file_;
   std::vector<std::string> header_;
   std::unique_ptr<CsvFile> csv_;
@@ -111,17 +117,19 @@ class RowTable : public Table {
   Columns<Row> columns_;
 };
 
+// Groups of options that a program may have.
+enum OptionGroup {
+  has_threads,  // --threads: cores of one run; results do not depend on it
+  has_resume,   // --resume, see Study
+  has_shares    // --list-shares, --share, --journal and --kept, see Study
+};
+
 // A program: its options, its tables and its work. In main(), declare the options and tables, and
 // return run(). Every program takes --force, --time-limit, --progress and --version.
 class Program {
  public:
-  struct About {
-    std::string name, summary;  // for --help
-    bool has_threads = false;   // --threads: cores of one run; results do not depend on it
-    bool has_resume = false;    // --resume, see Study
-    bool has_shares = false;    // --list-shares, --share, --journal and --kept, see Study
-  };
-  explicit Program(const About& about);
+  // `summary` is for --help.
+  Program(std::string name, const std::string& summary, SetOf<OptionGroup> groups = {});
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -236,13 +244,13 @@ class Program {
   // Opens the tables, calls fill(), which returns how they were made, and gives them their names.
   int write(const std::function<nlohmann::json()>& fill);
 
-  // The record of how a result is made (see provenance.hpp).
+  // The record of how a result is made (see provenance.hpp), with the end time of the subject.
   nlohmann::json origin() const;
   nlohmann::json origin(const Subject& subject) const;
 
   // The command line as given.
   const std::vector<std::string>& command_line() const { return command_line_; }
-  const std::string& name() const { return about_.name; }
+  const std::string& name() const { return name_; }
   bool has(const std::string& option) const;
   // The options that were given with their values, in the order of declaration; their names,
   // repeated and in the order in which they were given.
@@ -273,7 +281,8 @@ class Program {
   int complain(const std::string& sentence, int status) const;
   void open_tables();
 
-  About about_;
+  std::string name_;
+  SetOf<OptionGroup> groups_;
   std::unique_ptr<CLI::App> app_;  // hidden, since its headers take six seconds to compile
   std::vector<std::shared_ptr<void>> values_;
   std::vector<std::function<void()>> checks_;

@@ -30,8 +30,7 @@ constexpr const char* divisors =
     "and the largest speed [m/s] of a node over the run, of those in the node's own part of the "
     "scene where there are several (those at rest: of the whole scene); errors of the energy by "
     "the largest kinetic energy [J]; all without what moves in closed form (nodes on no spring, "
-    "the "
-    "common fall of a part without pins), unless nothing else moves";
+    "the common fall of a part without pins), unless nothing else moves";
 
 std::vector<double> list(const Vec& x) { return {x.begin(), x.end()}; }
 
@@ -104,8 +103,8 @@ std::string checksum(nlohmann::json json) {
   return text_hash(written(json, -1));
 }
 
-// Whether the end has the energy that the start has, which the exact motion keeps, to what is
-// certified and what another machine may round otherwise.
+// Whether start and end have the same energy, as in the exact motion. The certified error and
+// another machine's rounding may separate them.
 bool keeps_energy(const Reference& r, const ReducedScene& scene) {
   const State& start = scene.initial();
   const double kinetic = scene.kinetic(start), potential = scene.potential(start);

@@ -27,10 +27,11 @@ void require_reference_exists(const ReducedScene& scene, const std::string& sour
 void require_reference_exists(const Subject& subject);
 
 // The reference of the scene at the time `until` [s]. It is read from `folder`/reference.json if
-// the same code made it of the same scene, its checksum is right and its end has the energy of the
-// start. Else it is made and written there with `origin`; a message on stderr says if the file was
-// damaged. A new reference is as accurate as possible, or has the position error `needed` if that
-// is given. `start` is the drawn scene as its motion starts, and `scene` the reduction of `start`.
+// the same code made it of the same scene. Its checksum must be right, and its end must have the
+// energy of the start. Else it is made and written there with `origin`; a message on stderr says if
+// the file was damaged. A new reference is as accurate as possible, or has the position error
+// `needed` if that is given. `start` is the drawn scene as its motion starts, and `scene` the
+// reduction of `start`.
 Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
                         double until, const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed = {});

@@ -107,6 +107,10 @@ void require_fit(const Method& method, const ReducedScene& scene, const std::str
   }
 }
 
+const Method& method_named(const std::string& name, const std::string& option) {
+  return named(name, methods(), &Method::name, option, "a method");
+}
+
 std::vector<const Method*> select_methods(const std::vector<std::string>& list,
                                           const ReducedScene& scene, const std::string& source) {
   std::vector<const Method*> selected;
@@ -116,17 +120,10 @@ std::vector<const Method*> select_methods(const std::vector<std::string>& list,
     }
   }
   for (const std::string& name : list) {
-    const Method* method = find_method(name);
-    if (!method) {
-      throw InvalidInput(
-          fmt::format("--methods: {} is not a method; allowed are {}", name, method_names()));
-    }
-    if (std::ranges::find(selected, method) != selected.end()) {
-      throw InvalidInput(fmt::format("--methods: {} is named twice; allowed is once", name));
-    }
-    require_fit(*method, scene, source);
-    selected.push_back(method);
+    selected.push_back(&method_named(name, "--methods"));
+    require_fit(*selected.back(), scene, source);
   }
+  require_each_once(list, "--methods");
   return selected;
 }
 

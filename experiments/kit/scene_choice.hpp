@@ -51,9 +51,12 @@ Subject subject_of(const SceneChoice& choice, double until = 0);
 Subject subject_of(Scene drawn, const SceneChoice& choice, double until);
 
 // Throws InvalidInput unless the method can run the scene. Some methods need a constant K, others
-// need named stiff springs, and most allow no massless node; the message names the node and the
+// need named stiff springs, and most allow no massless node. The message names the node and the
 // methods that allow it. `source` names the scene.
 void require_fit(const Method& method, const ReducedScene& scene, const std::string& source);
+
+// The method of that name, which the option has. Throws InvalidInput if there is none.
+const Method& method_named(const std::string& name, const std::string& option);
 
 // The methods named in `list` (a,b,...), or all that can run the scene if the list is empty. Throws
 // InvalidInput for an unknown or repeated name, and as require_fit does.

@@ -16,8 +16,8 @@ void protect_input(const std::string& path);
 void allow_replacing();
 
 // Throws InvalidInput, which names the path, if an output may not replace that file. Replaceable
-// are empty files, files that begin with `beginning` (a table's own header row), and files that
-// qddot wrote as their sidecar `sidecar` or their own text says.
+// are empty files and those that begin with `beginning`, a table's own header row. So are files
+// that qddot wrote, as their sidecar `sidecar` or their own text says.
 void require_replaceable(const std::string& path, const std::string& beginning = {},
                          const std::string& sidecar = {});
 

@@ -36,8 +36,8 @@ RowTable<RunRow>& run_table(Program& p);
 
 // Writes speed.csv: what local_global takes for one iteration and before the first one, and one of
 // Newton's iterations to assemble and factorise its matrix. They are medians of `repeats`
-// measurements, with steps of h [s], of cloths of 33, 65 and 101 nodes along a side whose stiffness
-// [N/m] grows in proportion. Returns the exit status.
+// measurements with steps of h [s]. The cloths have 33, 65 and 101 nodes along a side, and their
+// stiffness [N/m] grows in proportion. Returns the exit status.
 int time_iterations(Program& p, double stiffness, double h, int repeats,
                     const nlohmann::json& origin);
 

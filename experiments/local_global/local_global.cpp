@@ -1,6 +1,6 @@
 // How much do iterations of local_global, of its accelerations and of Newton's method gain in one
 // step of implicit Euler? The study repeats Figures 2 and 3 of Liu, Bargteil, O'Brien and Kavan
-// (SIGGRAPH Asia 2013) and adds the step's own error. Iterations below that error gain nothing.
+// (SIGGRAPH Asia 2013). It adds the step's own error. Iterations below that error gain nothing.
 //
 //   local_global --out results/local_global
 //   local_global --nodes 65 --stiffness 2400 --step-size 0.0333 --out results/coarse
@@ -35,12 +35,9 @@
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::local_global;
-  Program p(
-      {.name = "local_global",
-       .summary =
-           "Measures how much iterations gain in a step of implicit Euler, by several solvers.",
-       .has_threads = true,
-       .has_resume = true});
+  Program p("local_global",
+            "Measures how much iterations gain in a step of implicit Euler, by several solvers.",
+            {has_threads, has_resume});
   p.out("the folder for the tables");
   const auto is_side = [](int n, const std::string& option) { require_within(n, 3, 400, option); };
   const auto is_stiffness = [](double k, const std::string& option) {

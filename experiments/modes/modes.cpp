@@ -34,10 +34,9 @@ bool is_at_equilibrium(const Argument<std::string>& at, const Scene& scene) {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::modes;
-  Program p({.name = "modes",
-             .summary =
-                 "Finds the natural modes of a scene: frequencies and shapes of its small motions.",
-             .has_threads = true});
+  Program p("modes",
+            "Finds the natural modes of a scene: frequencies and shapes of its small motions.",
+            {has_threads});
   auto scene = p.drawn_scene();
   p.out(
       "the folder for modes.csv (a mode that grows instead of vibrating has omega = -growth "

@@ -60,8 +60,8 @@ constexpr std::size_t slab = 1 << 15;
 std::size_t slabs(std::size_t items) { return (items + slab - 1) / slab; }
 
 // The lengths [m] of the scene's springs that define their strains, (l - length) / length. A length
-// is the rest length or, if that is zero, the distance of the nodes at the start of the motion,
-// `nodes`; zero if both are.
+// is the rest length or, if that is zero, the distance of the nodes at the start of the motion.
+// `nodes` has that start. It is zero if both are.
 std::vector<double> strain_lengths(const Scene& scene, const std::vector<Node>& nodes) {
   std::vector<double> lengths;
   lengths.reserve(scene.springs.size());

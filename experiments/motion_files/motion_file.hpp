@@ -18,9 +18,9 @@ struct Fields {
 };
 constexpr Fields no_fields{.velocity = false, .kinetic_energy = false, .strain = false};
 
-// A motion in a file for other programs: all nodes of a scene, with pinned ones, frame after frame
-// in 32-bit floats, and the cells that join them. Its files appear together on commit(), or not at
-// all.
+// A motion in a file for other programs. It has all nodes of a scene, with pinned ones, frame after
+// frame in 32-bit floats, and the cells that join them. Its files appear together on commit(), or
+// not at all.
 class MotionFile {
  public:
   virtual ~MotionFile() = default;

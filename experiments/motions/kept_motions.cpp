@@ -22,21 +22,9 @@ namespace {
 constexpr double most_positions = 6e5;
 constexpr int fewest_frames = 20, usual_frames = 100;
 
-const std::vector<std::string> columns = {"file",
-                                          "role",
-                                          "method",
-                                          "knob",
-                                          "value",
-                                          "outcome",
-                                          "t_reached",
-                                          "frames",
-                                          "largest_distance",
-                                          "why",
-                                          "seconds",
-                                          "seconds_force",
-                                          "seconds_stiffness",
-                                          "seconds_factorization",
-                                          "seconds_solve"};
+const std::vector<std::string> columns = kit::columns_in(
+    "file role method knob value outcome t_reached frames largest_distance why seconds "
+    "seconds_force seconds_stiffness seconds_factorization seconds_solve");
 
 const std::string place = "motions/", unfinished = "motions.part/", ending = ".vtkhdf";
 

@@ -51,8 +51,8 @@ class KeptMotions {
   // Ends before the first state whose numbers the file cannot hold.
   Written write(const std::string& name, const std::vector<State>& states, std::size_t every,
                 bool is_reference);
-  // That the run ended elsewhere than on the chart, as steps which end at frames are others; empty
-  // where it did not.
+  // A sentence if the run ended elsewhere than on the chart, since its steps end at frames; else
+  // empty.
   std::string difference(const Point& point, const State& end, const Reference& reference) const;
   double largest_distance(const std::vector<State>& states, std::size_t every,
                           const Reference& reference) const;

@@ -4,8 +4,7 @@
 //   motions --scene cloth --out results/cloth
 //
 //  1. The folder's points.csv says which runs there are; the options that they were measured with
-//     come from its sidecar. The most telling come first: the fastest at each accuracy, those of
-//     the other family, the coarsest run of each method and its first failure, then the rest.
+//     come from its sidecar. The most telling come first (see chosen_runs.hpp).
 //  2. The reference's motion is that of a fast and very accurate run, compared with the reference
 //     at the end. Each run is made once more, seen at the same times; and once unseen, timed by
 //     phase: forces, stiffness matrices, factorisations, solves.
@@ -64,10 +63,9 @@ void keep(const std::vector<ChosenRun>& runs, bool all, const Options& options,
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::motions;
-  Program p(
-      {.name = "motions",
-       .summary = "Keeps the motions of the runs of a work-precision chart, beside the reference.",
-       .has_threads = true});
+  Program p("motions",
+            "Keeps the motions of the runs of a work-precision chart, beside the reference.",
+            {has_threads});
   auto scene = p.drawn_scene();
   auto frames =
       p.whole("--frames", "number of frames after the start (default: 100, fewer for large scenes)")
@@ -92,7 +90,6 @@ int main(int argc, char** argv) {
     const Subject subject =
         subject_of(std::move(drawn), {scene->name, study.no_reduce}, study.until);
     nlohmann::json origin = p.origin(subject);
-    origin["until"] = study.until;
     origin["study"] = study.key;
     const Reference reference = reference_for(subject, p.folder(), origin);
     const auto front = fastest_at_each_accuracy(study.points, reference);

@@ -21,9 +21,9 @@ std::vector<State> states_at(const std::vector<double>& times, const ReducedScen
                              const Method& method, const Options& options, double seconds);
 
 // The motion of the reference at `times` [s]. It is Kahan and Li's composition with smaller and
-// smaller steps, until its distance to the reference's end is the certified error, only rounding is
-// left, or `seconds` are over. It is the run of the most accurate point if that is nearer. Empty if
-// neither comes within 1e-6 of the end, as beyond the horizon of a chaotic motion.
+// smaller steps. These end when its distance to the reference's end is the certified error, only
+// rounding is left, or `seconds` are over. It is the run of the most accurate point if that is
+// nearer. Empty if neither comes within 1e-6 of the end, as beyond the horizon of a chaotic motion.
 std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times,
                                                 const ReducedScene& scene,
                                                 const Reference& reference,

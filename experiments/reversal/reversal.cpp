@@ -7,6 +7,8 @@
 
 using namespace qddot;
 
+namespace {
+
 struct Row {
   std::string method;
   double step_size, distance;  // [s], [m]; NaN if a run does not reach its end
@@ -24,11 +26,10 @@ Row there_and_back(const Method& method, double step_size, const Subject& subjec
   return {method.name, step_size, (state.q - subject.reduced.initial().q).cwiseAbs().maxCoeff()};
 }
 
+}  // namespace
+
 int main(int argc, char** argv) {
-  Program p({.name = "reversal",
-             .summary = "Runs forward and back: how far from the start?",
-             .has_resume = true,
-             .has_shares = true});
+  Program p("reversal", "Runs forward and back: how far from the start?", {has_resume, has_shares});
   auto scene = p.scene();
   auto until = p.until();
   auto methods = p.methods();

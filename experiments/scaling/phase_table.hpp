@@ -20,8 +20,8 @@ struct SizedScenes {
   // plane; Lipton, Rose and Tarjan, SIAM J. Numer. Anal. 16:2, 1979, in space).
   double (*factorization)(double nodes);
   double (*fill)(double nodes);
-  // The work of conjugate gradients while the condition worsens with more nodes: iterations in
-  // proportion to the nodes along a side, each in proportion to all nodes.
+  // The work of conjugate gradients while the condition worsens with more nodes. Iterations grow
+  // with the nodes along a side, and each with all nodes.
   double (*iterations)(double nodes);
 };
 

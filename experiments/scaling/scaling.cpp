@@ -65,10 +65,8 @@ nlohmann::json noted(nlohmann::json origin, const ScalingResults& results) {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::scaling;
-  Program p({.name = "scaling",
-             .summary = "Measures how the cost of a step grows with the number of nodes.",
-             .has_threads = true,
-             .has_resume = true});
+  Program p("scaling", "Measures how the cost of a step grows with the number of nodes.",
+            {has_threads, has_resume});
   auto names =
       p.words("--scenes", {"chain", "cloth", "lattice"},
               "a,b,...: the scenes, of chain, cloth and lattice")

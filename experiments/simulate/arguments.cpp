@@ -98,9 +98,7 @@ bool only_writes_scene(const Program& program) {
 
 const Method& require_method(const std::string& name) {
   require_given(name, "--method", "a method's name (simulate --list-methods prints them)");
-  if (const Method* method = find_method(name)) return *method;
-  throw InvalidInput(
-      fmt::format("--method: {} is not a method; allowed are {}", name, method_names()));
+  return method_named(name, "--method");
 }
 
 Options checked_options(const Arguments& a, const Method& method) {

@@ -15,8 +15,8 @@
 
 namespace qddot::simulate {
 
-// The outputs of a run: all nodes at its end, all nodes over time (as a table or a motion file for
-// other programs), and the energy over time.
+// The outputs of a run: all nodes at its end, all nodes over time, and the energy over time. Nodes
+// over time are a table or a motion file for other programs.
 class Outputs {
  public:
   // Writes the scene as `drawn` at once, where --write-scene asks for that. `start`: the scene that

@@ -19,8 +19,8 @@ constexpr double longest_silence = 9;
 // most every second. The thread wakes for microseconds each time.
 constexpr double first_look = 1, look_again = 0.01;
 
-// A sentence on the time that a run will take in all, from the time `t` of `until` [s] that it
-// reached in `seconds` of wall time. Empty if that is a minute or less.
+// A sentence on the time that a run will take in all. It reached the time `t` of `until` [s] in
+// `seconds` of wall time. Empty if that is a minute or less.
 std::string pace_in_words(double t, double until, double seconds) {
   if (!(t > 0)) {
     return seconds < longest_silence ? ""

@@ -94,8 +94,7 @@ int simulate(const Arguments& a) {
 
 int main(int argc, char** argv) {
   using namespace qddot;
-  Program p(
-      {.name = "simulate", .summary = "Runs one integrator on one scene.", .has_threads = true});
+  Program p("simulate", "Runs one integrator on one scene.", {has_threads});
   const simulate::Arguments arguments{p};
   return p.run(argc, argv, [&] { return simulate::simulate(arguments); });
 }

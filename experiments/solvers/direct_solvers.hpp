@@ -35,8 +35,8 @@ struct DirectSolverKind {
 // the first time, as SUNDIALS' users have it.
 const std::vector<DirectSolverKind>& direct_solvers();
 
-// The rate [operations/s] at which one core multiplies dense matrices in its second cache, by the
-// installed BLAS, which uses the widest vectors of the processor. The fastest of all passes in
+// The rate [operations/s] at which one core multiplies dense matrices in its second cache. The
+// installed BLAS does so with the widest vectors of the processor. The fastest of all passes in
 // `seconds`.
 double product_flops(double seconds);
 

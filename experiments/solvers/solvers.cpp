@@ -5,9 +5,9 @@
 //
 //  1. K is the scene's at its start. Each solver analyses the pattern once (analysis_s), and is
 //     checked: |A x - b| of its solution must be rounding.
-//  2. Solvers run by turns, --repeats times, on as many threads as OMP_NUM_THREADS says;
-//     factorization_s and solve_s are those of the fastest sample, which neighbours disturb least;
-//     a sample is several calls where one is short.
+//  2. Solvers run by turns, --repeats times, on as many threads as OMP_NUM_THREADS says.
+//     factorization_s and solve_s are those of the fastest sample, which neighbours disturb least.
+//     A sample is several calls where one is short.
 //  3. gflops: a solver's own operations over its time; gigabytes_per_second: its factors, read once
 //     forward and once back, over the time of a solve. The row `machine` has one thread's limits:
 //     a dense product's operations a second, and the rate of reading as many bytes as the
@@ -72,10 +72,8 @@ SolverRow machine(const Subject& subject, double bytes) {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::solvers;
-  Program p({.name = "solvers",
-             .summary = "Measures direct solvers of M - h^2 K against each other and the machine.",
-             .has_threads = true,
-             .has_resume = true});
+  Program p("solvers", "Measures direct solvers of M - h^2 K against each other and the machine.",
+            {has_threads, has_resume});
   auto choice = p.scene();
   auto names = p.words("--solvers",
                        "a,b,...: the solvers, of multifrontal, cholmod, eigen, klu (default: all)")

@@ -28,7 +28,8 @@ std::string or_none(double limit) {
 }
 
 // The row of adaptive.csv: the steps of an adaptive method on a slow motion beside a fast vibration
-// almost at rest: q1'' = -q1 from (1, 0) and q2'' = -w^2 q2 from (0, 1e-6), over ten periods of q1.
+// almost at rest. These are q1'' = -q1 from (1, 0) and q2'' = -w^2 q2 from (0, 1e-6), over ten
+// periods of q1.
 // An explicit method still has to keep h w below its limit. It does so by a bound of w, or by
 // rejecting steps once q2 has grown to a visible size. Energies are those at the end: of the fast
 // vibration over all at the start, of the slow one as its error.

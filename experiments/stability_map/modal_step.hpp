@@ -15,9 +15,9 @@ namespace qddot::stability_map {
 LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode& mode,
                       Options options);
 
-// The verdict in a word: blows up (grows by more than 1e-6 a step), lives (keeps half of its energy
-// for ten periods or more), is killed (loses nine tenths of its amplitude within one period), else
-// is damped.
+// The verdict: "blows up" grows by more than 1e-6 a step, "lives" keeps half of its energy for ten
+// periods or more. "is killed" loses nine tenths of its amplitude within one period, and "is
+// damped" is all else.
 std::string modal_verdict(const LinearStep& step);
 
 }  // namespace qddot::stability_map

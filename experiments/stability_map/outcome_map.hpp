@@ -40,8 +40,8 @@ std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& redu
 struct Cell {
   const Method* method;
   const AmplitudeRow* row;
-  double h_omega;  // requested h w_max; nothing if the method chooses its steps:
-  double rtol;     // then its tolerance
+  double h_omega;  // requested h w_max; 0 if the method chooses its steps
+  double rtol;     // the tolerance of such a method; 0 for others
 };
 
 // The settings by which runs are made and judged.

@@ -20,10 +20,10 @@ constexpr int least_steps = 100;
 // The outcome of a run, where X is its energy above rest. `outcome` is
 //   bounded      X keeps its size (with Verlet's method it may oscillate much near its limit)
 //   diverged     X grew beyond ten times its start value and went on growing, or beyond all bounds
-//   indefinite_matrix   of linearly implicit methods: X jumped beyond ten times its start value at
-//   a
-//                state where compressed springs made M - h^2 K singular or nearly so (h times the
-//                rate at which they push sideways above 0.9)
+//   indefinite_matrix
+//                of linearly implicit methods: X jumped beyond ten times its start value at a state
+//                where compressed springs made M - h^2 K singular or nearly so (h times the rate at
+//                which they push sideways above 0.9)
 //   gained       X ended above 1 + tolerated of its start value, on the mean of the last quarter
 //   leaked       X ended below 1 - tolerated
 //   unconverged  of methods with a given number of iterations: five times as many change the motion
@@ -41,7 +41,7 @@ struct RunOutcome {
 
 // Runs the method from scene.initial() and judges the run. X is measured after each of the first
 // 200 steps and 400 times more. If X stays above three times its start value, growth is fitted to
-// the second half of that time (or all of it if it is short). Else it is fitted to the second half
+// the second half of that time, or all of it if it is short. Else it is fitted to the second half
 // of the run.
 RunOutcome run_outcome(const Method& method, const Options& options, const ReducedScene& scene,
                        const RunPlan& plan);

@@ -7,7 +7,7 @@
 //  1. limits.csv and linear.csv: every method of fixed steps on q'' = -w^2 q, where each step is a
 //     matrix (linear_step.hpp). They have its spectral radius, damping ratio and period error for
 //     h w from 0.01 to 100. They also have the h w at which it starts to grow, predicted and found
-//     by bisection (linear_limit.hpp), and h as that h w over w_max of the scene at its start.
+//     by bisection (linear_limit.hpp). That h w over w_max of the scene at its start gives h.
 //     adaptive.csv: the steps of methods that choose them (linear_tables.hpp).
 //  2. modal.csv: the same in natural modes of the scene about its equilibrium at one h
 //     (modal_step.hpp), predicted as in 1 and measured by exciting the mode.
@@ -48,10 +48,8 @@ std::optional<Scene> at_rest(const Subject& subject) {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::stability_map;
-  Program p({.name = "stability_map",
-             .summary = "Measures where each method is stable, and compares with theory.",
-             .has_resume = true,
-             .has_shares = true});
+  Program p("stability_map", "Measures where each method is stable, and compares with theory.",
+            {has_resume, has_shares});
   auto choice = p.scene();
   auto methods = p.methods(
       "a,b,...: the methods (default: all; in the map all hand-written ones of fixed steps)");
@@ -134,7 +132,6 @@ int main(int argc, char** argv) {
       print(limits);
       print(cells, all);
       nlohmann::json origin = p.origin(subject);
-      origin["until"] = subject.until;
       origin["omega_max"] = omega_max;
       origin["tolerated"] = *tolerated;
       origin["vary"] = *vary;

@@ -63,12 +63,9 @@ void print(const PairedRuns& r) {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::stock_sundials;
-  Program p({.name = "stock_sundials",
-             .summary =
-                 "Measures what SUNDIALS' implicit methods gain from n x n solves, against stock "
-                 "KLU.",
-             .has_threads = true,
-             .has_resume = true});
+  Program p("stock_sundials",
+            "Measures what SUNDIALS' implicit methods gain from n x n solves, against stock KLU.",
+            {has_threads, has_resume});
   auto choice = p.scene();
   auto until = p.until();
   auto names =
@@ -80,39 +77,19 @@ int main(int argc, char** argv) {
                    .last()
                    .positive("the seconds a run may take");
   p.out("the folder for structure.csv and reference.json");
-  auto& table = p.table("structure.csv", {"scene",
-                                          "method",
-                                          "rtol",
-                                          "outcome",
-                                          "stock_outcome",
-                                          "structured_s",
-                                          "stock_s",
-                                          "ratio",
-                                          "structured_error",
-                                          "stock_error",
-                                          "steps",
-                                          "stock_steps",
-                                          "newton_iterations",
-                                          "stiffness_evaluations",
-                                          "factorizations",
-                                          "stock_factorizations",
-                                          "indefinite_factorizations",
-                                          "structured_force",
-                                          "structured_stiffness",
-                                          "structured_factorization",
-                                          "structured_solve",
-                                          "structured_rest",
-                                          "stock_force",
-                                          "stock_stiffness",
-                                          "stock_factorization",
-                                          "stock_solve",
-                                          "stock_rest"});
+  auto& table =
+      p.table("structure.csv",
+              columns_in("scene method rtol outcome stock_outcome structured_s stock_s ratio "
+                         "structured_error stock_error steps stock_steps newton_iterations "
+                         "stiffness_evaluations factorizations stock_factorizations "
+                         "indefinite_factorizations structured_force structured_stiffness "
+                         "structured_factorization structured_solve structured_rest stock_force "
+                         "stock_stiffness stock_factorization stock_solve stock_rest"));
   return p.run(argc, argv, [&] {
     const Subject subject = subject_of(choice, until);
     require_reference_exists(subject);
     const auto pairs = select_pairs(names, subject);
-    nlohmann::json origin = p.origin(subject);
-    origin["until"] = subject.until;
+    const auto origin = p.origin(subject);
     return p.study(
         subject.about(),
         [&](Study& study) {

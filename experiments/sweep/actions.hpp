@@ -4,13 +4,12 @@
 #include <string>
 #include <vector>
 
-// Actions of sweep, in the folder of a sweep. Those that return an int
-// return the exit status.
+// Actions of sweep, in the folder of a sweep. Those that return an int return the exit status.
 namespace qddot::sweep {
 
 // Plans the study of a file: writes its tasks, and scene files that it asks for, into the folder
-// `out`, and prints how many there are. Throws InvalidInput, in the program's own words, if it does
-// not take a scene, a method or an option, and if there would be too many tasks.
+// `out`. Prints how many there are. Throws InvalidInput if there would be too many tasks or, in the
+// program's own words, if it does not take a scene, a method or an option.
 int plan(const std::string& study_path, const std::string& out);
 
 // Tasks of a sweep.
@@ -21,8 +20,8 @@ struct TaskChoice {
   bool again = false;  // also those that another kind of machine has measured
 };
 
-// Measures these tasks, unless they are done, one after the other, each in a process of its own,
-// and prints how many came to which end. Throws InvalidInput for a wrong shard or id, and
+// Measures those of these tasks that are not done, one after the other, each in a process of its
+// own. Prints how many came to which end. Throws InvalidInput for a wrong shard or id, and
 // Interrupted if the work is to end; the present task keeps its points.
 int run_tasks(const std::string& folder, const TaskChoice& choice);
 
@@ -33,8 +32,8 @@ struct Merging {
   bool has_pictures = true;
 };
 
-// Makes, from the results of the tasks, for each scene a folder of its name with the outputs of the
-// study's program (tables, a chart, a report). If the program is work_precision, also makes
+// Makes a folder for each scene, with the outputs of the study's program from the results of the
+// tasks: tables, a chart, a report. If the program is work_precision, also makes
 // fastest.csv, crossovers.csv and a picture of them from the points.csv of all scenes. missing.csv
 // and stdout name missing results, the reason, and the command that measures them. Throws
 // InvalidInput if times of unlike machines would be compared.

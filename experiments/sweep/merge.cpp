@@ -29,7 +29,7 @@ namespace qddot::sweep {
 struct WorkCosts {
   double force = 0, stiffness = 0, factorization = 0, solve = 0;
 };
-// Looked for in the namespace of the type.
+// nlohmann::json looks for it in the namespace of the type.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkCosts, force, stiffness, factorization, solve)
 
 namespace {
@@ -68,8 +68,8 @@ std::string value_of(const std::vector<std::string>& words, const std::string& o
   return found == words.end() || found + 1 == words.end() ? "" : *(found + 1);
 }
 
-// Measures the costs on the scene of the task, as its program reduces it, each as the least of many
-// calls: f and K at the start, the numeric factorisation of M - h^2 K, and a solve with it.
+// Measures the costs on the scene of the task, as its program reduces it: f and K at the start, the
+// numeric factorisation of M - h^2 K, and a solve with it. Each is the least of many calls.
 // h = 1 / w_max makes the matrix positive definite if K allows.
 WorkCosts measured_costs(const Task& task) {
   constexpr double seconds_each = 0.05;

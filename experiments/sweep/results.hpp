@@ -25,8 +25,8 @@ SceneResult read_result(const Task& task, const std::string& folder);
 // The accuracies of the task's study, from coarse to fine.
 std::vector<double> accuracies_of(const Task& task);
 
-// `path`, fastest.csv: at each accuracy the fastest method on each scene, the next, and how many
-// times as long that takes.
+// Writes `path`, fastest.csv: at each accuracy the fastest method on each scene, the next, and how
+// many times as long that takes.
 void write_fastest(const std::string& path, const std::vector<SceneResult>& results,
                    const std::vector<double>& accuracies, const nlohmann::json& origin);
 

@@ -8,13 +8,13 @@
 //   sweep submit S --slurm --partition=short --go       # all of that by Slurm
 //   sweep submit S --parallel --sshlogin a,b --go       # or by GNU parallel
 //
-//  1. plan asks the study's program which shares of each scene can be measured independently: the
-//     reference, then a task for each method (or for a stiffness ratio of crossover, or a case of
-//     advice). A task's name is a hash of all that decides its results: scene, end time, method,
+//  1. plan asks the study's program which shares of each scene can be measured independently. They
+//     are the reference and each method; or each stiffness ratio of crossover, or each case of
+//     advice. A task's name is a hash of all that decides its results: scene, end time, method,
 //     options, code and flags.
 //  2. run measures the tasks of a shard. Each task has a process of the program, and a file that
-//     appears whole or not at all. Tasks that are done are skipped: the same command goes on after
-//     a process was killed, and two processes that measure the same task do no harm.
+//     appears whole or not at all. Tasks that are done are skipped, so the same command goes on
+//     after a process was killed. Two processes that measure the same task do no harm.
 //  3. merge gives each scene's files to the program, which makes its tables as if it had measured
 //     them by itself. Times of unlike machines are never compared.
 #include <cstdlib>
@@ -90,8 +90,7 @@ int main(int argc, char** argv) {
   const Words words = parted(argc, argv);
   std::vector<char*> own;
   for (const std::string& word : words.own) own.push_back(const_cast<char*>(word.c_str()));
-  Program p({.name = "sweep",
-             .summary = "Divides a study of many scenes among processes and merges the results."});
+  Program p("sweep", "Divides a study of many scenes among processes and merges the results.");
   auto action = p.word("action", "plan, run, merge, submit or status");
   auto where = p.word("where", "plan: the study's file; others: the sweep's folder");
   auto out = p.word("--out", "plan: the sweep's folder").last();

@@ -26,7 +26,7 @@
 
 namespace qddot::sweep {
 
-// Looked for in the namespace of the type.
+// nlohmann::json looks for it in the namespace of the type.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Task, id, stage, folder, program, share, arguments, key, varied,
                                    entry, order)
 

@@ -76,8 +76,8 @@ void print_share(const char* whose, const std::vector<FormulaPoint>& points, boo
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::spurious_roots;
-  Program p({.name = "symmetric_roots",
-             .summary = "Charts what the spurious roots of symmetric multistep formulas trade."});
+  Program p("symmetric_roots",
+            "Charts what the spurious roots of symmetric multistep formulas trade.");
   auto samples =
       p.whole("--samples", 1500,
               "number of sampled sets of roots, for each pair of roots in a set, 1 to 100000")

@@ -7,7 +7,7 @@
 //  1. confusion.csv: for each kind the verdicts given, how many, and whether that is right, wrong,
 //     or uncertain (`undecided` and `unknown`, which claim nothing).
 //  2. coverage.csv: for each interval or bound that is printed, how often it holds what is true,
-//     with the 95 % interval of that (Wilson); and the size of a walk over the true one.
+//     with the 95 % interval of that (Wilson). Its sidecar has walks' sizes over the true ones.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -73,9 +73,8 @@ void print_coverage(const std::vector<SyntheticKind>& kinds, const std::vector<T
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::verdicts;
-  Program p({.name = "verdicts",
-             .summary = "Finds out how often the verdicts of energy_drift are right.",
-             .has_resume = true});
+  Program p("verdicts", "Finds out how often the verdicts of energy_drift are right.",
+            {has_resume});
   auto seeds = p.whole("--seeds", 100, "runs of each kind").within(1, 1000000);
   auto cells = p.whole("--cells", many_cells, "samples in an octave of a run").within(8, 1 << 20);
   std::vector<std::string> names;

@@ -9,6 +9,7 @@
 #include "qddot/measure/speed/chart_words.hpp"
 
 namespace qddot::work_precision {
+
 // The columns and rows of front.csv; rows without a fastest method have empty fields.
 extern const std::vector<std::string> front_columns;
 void tabulate(Csv& csv, const std::string& scene, const Chart& chart);

@@ -13,7 +13,7 @@
 //     time.
 //  3. points.csv has every point, failed ones with the reason. front.csv has, for each accuracy
 //     from 1e-1 to 1e-9, the fastest method known to reach it. Accuracy is that of the positions at
-//     the end, or of the energy over time if the end is beyond the horizon of a chaotic motion.
+//     the end. Beyond the horizon of a chaotic motion it is that of the energy over time.
 //     --accuracies chooses other accuracies; no method is then measured at finer ones.
 //     chart.json says what the points mean, for pictures and pages (see chart_record.hpp). --judge
 //     makes it anew from the tables of an earlier run.
@@ -67,11 +67,8 @@ Shares shares_of(const std::vector<const Method*>& methods) {
 int main(int argc, char** argv) {
   using namespace qddot;
   using namespace qddot::work_precision;
-  Program p({.name = "work_precision",
-             .summary = "Measures speed against accuracy of every integrator on one scene.",
-             .has_threads = true,
-             .has_resume = true,
-             .has_shares = true});
+  Program p("work_precision", "Measures speed against accuracy of every integrator on one scene.",
+            {has_threads, has_resume, has_shares});
   auto scene = p.scene();
   auto until = p.until();
   auto methods = p.methods();
@@ -99,8 +96,7 @@ int main(int argc, char** argv) {
     const Subject subject = subject_of(scene, until);
     require_reference_exists(subject);
     const auto selected = select_methods(methods, subject);
-    nlohmann::json origin = p.origin(subject);
-    origin["until"] = subject.until;
+    const auto origin = p.origin(subject);
     std::optional<Reference> reference;
     std::vector<std::vector<Point>> taken;  // by method
     const auto measure = [&](Study& study) {

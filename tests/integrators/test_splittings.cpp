@@ -69,8 +69,9 @@ BOOST_AUTO_TEST_CASE(each_splitting_meets_all_conditions_of_its_order_and_not_th
   }
 }
 
-BOOST_AUTO_TEST_CASE(each_splitting_is_the_same_read_backwards) {
+BOOST_AUTO_TEST_CASE(each_splitting_of_even_order_is_the_same_read_backwards) {
   for (const auto& [name, splitting] : all()) {
+    if (splitting.order % 2 != 0) continue;  // no symmetric splitting has an odd order
     BOOST_TEST_CONTEXT(name) {
       for (const std::vector<double>& list : {splitting.kicks, splitting.drifts}) {
         const std::vector<double> backwards(list.rbegin(), list.rend());
