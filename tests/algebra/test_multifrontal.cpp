@@ -79,7 +79,7 @@ std::vector<Matrix> patterns(double share_negative) {
   return all;
 }
 
-// How far scenes are moved from their starts, in parts of their size: springs are compressed and
+// Scenes are moved from their starts by this part of their size: springs are compressed and
 // stretched.
 constexpr double away = 1e-2;
 

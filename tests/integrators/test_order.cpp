@@ -47,7 +47,7 @@ std::vector<Method> of_chosen_steps() {
 std::vector<int> step_counts(const Method& method, const KnownMotion& motion) {
   std::vector<int> list;
   if (!method.recurrence_roots) {
-    // Where all springs are stiff, only small steps inside err, and errors soon are rounding.
+    // In the stiff hammock only small steps inside err, and errors soon are rounding.
     const bool has_both = method.asks(Need::split_forces) && motion.name != "stiff hammock";
     const int first = has_both ? 20 : 6;
     for (int steps = first; steps <= first << 12; steps *= 2) list.push_back(steps);
