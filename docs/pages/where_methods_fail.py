@@ -25,7 +25,7 @@ def limit_of(method):
 
 
 def first_failure(runs):
-    """Of runs, the one of the least h ω that fails, and how."""
+    """The failing run of the least h ω, and how it fails."""
     failed = [run for run in runs if run["outcome"] not in HELD]
     if not failed:
         return NOTHING

@@ -179,8 +179,8 @@ def rounded(cell):
 
 
 def keep(file, target, columns=None):
-    """Copies a result, whole or not at all. Of a table it keeps these columns, or all; of a chart's
-    record, of all errors those that judge accuracy. Numbers of both are kept in six digits."""
+    """Copies a result, whole or not at all. A table keeps these columns, or all. A chart's record
+    keeps the errors that judge accuracy. Numbers of both are kept in six digits."""
     if file.suffix == ".csv":
         with open(file, newline="", encoding="utf-8") as source:
             rows = list(csv.DictReader(source))

@@ -190,8 +190,9 @@ def line_label(axes, words, color, text_color, size=9, white=0, alpha=None, lead
 
 
 def move_labels(texts, anchors, ink, position_of):
-    """Puts each label near one of its anchors in pixels, off the others and off the ink. Of an
-    anchor position_of makes a position in its axes. A label apart from its line has a leader."""
+    """Puts each label near one of its anchors in pixels, off the others and off the ink.
+    `position_of` turns an anchor into a position in its axes. A label apart from its line has a
+    leader."""
     # The extent of an annotation counts its leader in; that of its text is wanted here.
     sizes = [Text.get_window_extent(text).size for text in texts]
     for text, place in zip(texts, place_labels(anchors, sizes, ink.bounds, ink)):
@@ -209,7 +210,7 @@ def ink_within(axes):
 
 def label_lines(axes, lines, anchors_of, ink, **style):
     """Names each of the lines (words, colour, colour of the words, points), off the others and off
-    the ink. anchors_of makes the places that a name may be near of its line's pixels."""
+    the ink. `anchors_of` turns a line's pixels into the places that its name may be near."""
     texts, anchors = [], []
     for words, color, text_color, points in lines:
         pixels = [tuple(axes.transData.transform(point)) for point in points]

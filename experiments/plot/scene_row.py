@@ -15,8 +15,8 @@ DECADES = tuple(10.0**-digit for digit in range(1, 10))
 class Row:
     """A scene: its title, nodes, springs, end [s], and the least number of Verlet's steps to it
     (None where that is not known). By accuracy: the fastest point, how many times as long the best
-    of SUNDIALS takes, and the next method where it is known. Of the study: kinds and number of
-    methods, the processor, the accuracies asked for, and whether they are those of the energy."""
+    of SUNDIALS takes, and the next method where it is known. For the study: kinds and number
+    of methods, the processor, the accuracies asked for, and whether they are those of the energy."""
 
     title: str
     nodes: int

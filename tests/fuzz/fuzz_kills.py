@@ -8,10 +8,10 @@ disturbed.
 A trial sends SIGKILL, SIGINT or SIGTERM one to three times, at moments that are uniform in the
 study's duration. Then it runs the same command with --resume until it ends. All columns but
 measured times must be equal, to the digit; no .part file may be left at the end. After SIGINT and
-SIGTERM the status is 130, all tables are whole, and each sidecar says "interrupted". Of a sweep,
-several shards run at once while they, their programs and their files are disturbed. No complete task
-may change meanwhile, and all points must be those of an undisturbed sweep. Status 1: something was
-found.
+SIGTERM the status is 130, all tables are whole, and each sidecar says "interrupted". A sweep has
+several shards that run at once; they, their programs and their files are disturbed. No complete
+task may change meanwhile, and all points must be those of an undisturbed sweep. Status 1:
+something was found.
 """
 
 import argparse

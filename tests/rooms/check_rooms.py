@@ -3,9 +3,9 @@
 finds types and inline functions that are defined twice under one name, which no compiler sees.
 
 The table below is the plan: each room with the rooms that it may include, beside itself and all
-that those may include. Of two definitions the linker keeps one copy of each function that both have,
-and unoptimised code then calls it for the other, too. Reads formatted code: what is of a namespace
-starts its line. Call: check_rooms.py ROOT [--arrows]; --arrows prints the includes.
+that those may include. If two definitions share a function, the linker keeps one copy of it, and
+unoptimised code then calls it for the other, too. Reads formatted code: declarations of a namespace
+start their line. Call: check_rooms.py ROOT [--arrows]; --arrows prints the includes.
 """
 
 import re
