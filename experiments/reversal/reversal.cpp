@@ -23,7 +23,8 @@ Row there_and_back(const Method& method, double step_size, const Subject& subjec
     if (end.outcome != Outcome::reached_end) return {method.name, step_size, NAN};
     state = {.t = 0, .q = state.q, .v = -state.v};
   }
-  return {method.name, step_size, (state.q - subject.reduced.initial().q).cwiseAbs().maxCoeff()};
+  return {method.name, step_size,
+          (state.q - subject.reduced.initial().q).lpNorm<Eigen::Infinity>()};
 }
 
 }  // namespace

@@ -148,6 +148,16 @@ class Orders(Programs):
         self.done("reversal --scene cloth --until 0.05 --methods verlet --steps 1e-3 --out out")
         self.assertIsNone(table("out/reversal.csv")[0]["distance"])  # it did not reach its end
 
+    def test_every_study_takes_a_scene_without_unknowns(self):
+        write("s.toml", scene([pin(0), pin(1)], [spring(0, 1, 10)], until=0.5))
+        for words in (
+            "work_precision --methods verlet,ida --repeats 1", "convergence --methods verlet",
+            "energy_drift --methods verlet --step-size 0.1", "stability_map --methods verlet",
+            "stock_sundials --methods ida", "reversal --methods verlet", "modes", "motions",
+        ):  # fmt: skip
+            self.done(f"{words} --scene s.toml --out out")
+        self.assertEqual(table("out/reversal.csv")[0]["distance"], 0)
+
 
 class Rest(Programs):
     """Equilibria and the vibrations about them."""
