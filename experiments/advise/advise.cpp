@@ -95,8 +95,11 @@ int main(int argc, char** argv) {
       origin["seconds"] = all.seconds;
       csv->commit(origin);
     }
-    return std::ranges::all_of(all.for_each, [](const Advice& a) { return a.take.has_value(); })
-               ? done
-               : end_not_reached;
+    const auto missed = std::ranges::count_if(all.for_each, [](auto& one) { return !one.take; });
+    if (missed == 0) return done;
+    fmt::print(stderr,
+               "advise: no method is known to reach {} of {} accuracies; the table says why\n",
+               missed, all.for_each.size());
+    return end_not_reached;
   });
 }

@@ -86,6 +86,7 @@ class Table {
  public:
   Table(std::string file, std::vector<std::string> header)
       : file_(std::move(file)), header_(std::move(header)) {}
+  virtual ~Table() = default;  // a Program owns tables of all rows
   CsvFile& operator*() { return *csv_; }
   CsvFile* operator->() { return csv_.get(); }
   // Adds entries to the sidecar of this table alone.
