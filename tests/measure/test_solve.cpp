@@ -139,20 +139,23 @@ BOOST_AUTO_TEST_CASE(linear_motion_is_exact_at_once) {
 }
 
 BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
+  const CountedClock clock;
   const ReducedScene model(swinging_chain());
   const Answer late = measure::solve(model, 12, {.accuracy = 1e-3});
   BOOST_TEST(!late.is_reached);
   BOOST_TEST(contains(late.why, {"chaotic", "energy"}));
   const Reference reference = make_reference(model, 12, reference_seconds);
   BOOST_TEST_REQUIRE(reference.is_beyond_horizon());
-  // Seen at two dozen times; another run's rounding parts somewhere else.
-  BOOST_TEST(std::abs(late.horizon / reference.horizon - 1) < 0.25);
+  // The search sees motions part at one of nine times. Its runs have fewer steps, whose rounding
+  // may be a thousand times smaller or larger than that of the reference.
+  const double off = 12. / 9 + std::log(1e3) / reference.lyapunov;
+  BOOST_TEST(std::abs(late.horizon - reference.horizon) < off);
   // Its energy can be had all the same, and so can positions before.
   BOOST_TEST(measure::solve(model, 12, {.accuracy = 1e-3, .of = AccuracyOf::energy}).is_reached);
   BOOST_TEST(measure::solve(model, reference.horizon / 3, {.accuracy = 1e-3}).is_reached);
   // Nor does advice expect positions there of any method.
   const Advices advices = advise(swinging_chain(), 12, {1e-3});
-  BOOST_TEST(std::abs(advices.horizon / reference.horizon - 1) < 0.25);
+  BOOST_TEST(std::abs(advices.horizon - reference.horizon) < off);
   BOOST_TEST(!advices.for_each.front().take.has_value());
 }
 
