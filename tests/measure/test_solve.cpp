@@ -139,7 +139,6 @@ BOOST_AUTO_TEST_CASE(linear_motion_is_exact_at_once) {
 }
 
 BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
-  const CountedClock clock;
   const ReducedScene model(swinging_chain());
   const Answer late = measure::solve(model, 12, {.accuracy = 1e-3});
   BOOST_TEST(!late.is_reached);
