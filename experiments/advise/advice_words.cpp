@@ -60,14 +60,14 @@ void print_advice(const Advices& all, const SceneChoice& scene, double until) {
     const Candidate& take = *advice.take;
     fmt::print(fmt::runtime(row), fmt::format("{:.1e}", advice.accuracy), take.method->name,
                knob_in_words(*take.method, take.value),
-               fmt::format("{:.1e}{}", take.error, advice.is_seen ? " " : "?"),
+               fmt::format("{:.1e}", take.error),
                time_in_words(take.seconds), beside(advice.runner_up, advice),
                beside(advice.own_explicit, advice), beside(advice.own_implicit, advice),
                beside(advice.sundials, advice));
   }
   fmt::print(
-      "? expected, not measured; N x: N times as long (other methods: mostly expected); times are "
-      "of one run, without set-up\n\n");
+      "error: a bound; N x: N times as long; all runs were made, times are of one run, without "
+      "set-up\n\n");
   std::string last;
   for (const Advice& advice : all.for_each) {
     if (!advice.take) continue;

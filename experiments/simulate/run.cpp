@@ -108,7 +108,7 @@ int answer(const Arguments& a) {
   Outputs output(a, every, subject.drawn, subject.start, *model, until);
   wait_for_answer(patience_with_an_answer);
   progress().stage("looking for the fastest run");
-  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of});
+  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of}, &subject.start);
   progress().wipe();
   const auto why = answer.is_reached ? std::nullopt : interrupted();
   if (!answer.method) {  // no run was begun

@@ -30,14 +30,13 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Advice:
-    """The run to take for one accuracy. `take` is None if no run is expected to reach it; `why`
-    then says the reason. The runner-up takes `margin` times as long. is_seen: whether the error was
-    measured in a run and its check, and not only expected."""
+    """The run to take for one accuracy. `take` is None if no run is known to reach it; `why` then
+    says the reason. The runner-up takes `margin` times as long. All runs were made, and their
+    errors are bounds."""
 
     accuracy: float
     take: Candidate | None
     why: str
-    is_seen: bool
     margin: float
     runner_up: Candidate | None
     own_explicit: Candidate | None

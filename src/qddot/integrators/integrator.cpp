@@ -151,6 +151,8 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   message_.clear();
   failed_step_ = 0;
   stop_ = std::move(stop);
+  shown_steps_ = observer.step;
+  shows_steps_ = static_cast<bool>(shown_steps_);
   has_begun_ = false;
   Outcome outcome = Outcome::reached_end;
   double growth = 1;

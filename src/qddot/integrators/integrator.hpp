@@ -111,6 +111,8 @@ struct Summary {
 struct Observer {
   std::vector<double> times;
   std::function<void(const State&)> see;
+  // If set, called with each accepted step of a system without blocks. It changes no step.
+  std::function<void(const State&)> step{};
 };
 
 // Steps a System through time. Borrows the system, which must outlive it; owns its scratch space.
@@ -151,7 +153,10 @@ class Integrator {
   Seconds* seconds() { return options_.timed ? &seconds_ : nullptr; }
   // The end of the run [s]; known from start() on.
   double t_end() const { return t_end_; }
-  bool must_stop() const { return stop_.stop_requested(); }
+  bool must_stop() const {
+    return stop_.stop_requested() ||
+           (options_.most_forces > 0 && counts_.force_evaluations >= options_.most_forces);
+  }
   // Whether the step from `from` to `to` can be accepted: reached_end, or the reason why not
   // (not_finite, diverged, went_slack).
   Outcome check_step(const State& from, const State& to);
@@ -160,10 +165,11 @@ class Integrator {
   // Whether check_step() looks at more than the size of the velocities.
   bool checks_velocities() const { return validity_; }
   // Whether note() reads the velocities of the next state.
-  bool looks_next() const { return growth_.looks_next(); }
+  bool looks_next() const { return growth_.looks_next() || shows_steps_; }
   // Call with each state that is accepted.
   void note(const State& state) {
     growth_.note(state);
+    if (shows_steps_) shown_steps_(state);
     reached_.store(state.t, std::memory_order_relaxed);
   }
   // Joins another's run: ends no later and is stopped with it.
@@ -230,6 +236,8 @@ class Integrator {
   Seconds seconds_;
   double t_end_ = 0;
   std::stop_token stop_;
+  std::function<void(const State&)> shown_steps_;  // Observer::step
+  bool shows_steps_ = false;
   std::string message_;
   EnergyGrowth growth_;
   std::unique_ptr<MasslessBalance> balance_;  // only if there are massless nodes

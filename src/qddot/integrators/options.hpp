@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "qddot/algebra/solver.hpp"
 
 namespace qddot {
@@ -27,6 +29,9 @@ struct Options {
   // Whether a splitting keeps the rounding error of each addition to q and v, and adds it to the
   // next (see compensated_sum.hpp).
   bool compensated = false;
+  // The number of force evaluations after which a run ends, over budget; 0: none. Each part of a
+  // system of blocks has this number for itself.
+  std::int64_t most_forces = 0;
 };
 
 // The smallest rtol: the sum of several roundings in a step's error hides smaller ones.

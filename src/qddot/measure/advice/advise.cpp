@@ -2,169 +2,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/failure.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/advice/solve.hpp"
-#include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::inline measure {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Time limits [s]. All runs together take at most `for_runs`, or `of_the_run` times the longest
-// advised run. The perturbed run that detects chaos takes at most `for_twin`. SUNDIALS' methods are
-// tried until `for_sundials` after the start.
-constexpr double for_runs = 0.3, of_the_run = 1.8, for_twin = 0.15, for_sundials = 0.4;
-// The fraction of an accuracy that a run is chosen to have as its expected error, as in solve().
-constexpr double expected_to_miss = 0.45;
-
-Candidate as_candidate(const Search& search, const Trial& trial) {
-  const auto bound = search.bound(trial);
-  return {trial.method, trial.value, bound ? bound->error : search.error(trial), trial.seconds};
-}
 
 void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) {
   if (!fastest || candidate.seconds < fastest->seconds) fastest = candidate;
 }
 
-// A run, and whether it was made and checked.
-struct Contender {
-  Candidate run;
-  bool is_seen = false;
-
-  // Forecasts of implicit methods are poor before a run of theirs: neither error nor time is
-  // reliable.
-  bool is_vague() const { return !is_seen && run.method->is(Trait::implicit); }
-  // The run's time [s]; a forecast time is raised, as it is uncertain.
-  double handicapped() const {
-    constexpr double unseen = 1.3;
-    return is_seen ? run.seconds : unseen * run.seconds;
-  }
-};
-
-// The runs that reach the accuracy, as forecast or as measured: one for each method, fastest first.
-std::vector<Contender> contenders(const Search& search, double accuracy) {
-  std::vector<Contender> all;
-  if (search.forecast()) {
-    for (const Candidate& c : search.forecast()->candidates(expected_to_miss * accuracy)) {
-      if (c.error <= accuracy) all.push_back({c});
-    }
-  }
-  for (const Trial& trial : search.trials()) {
-    if (!search.is_known(trial, accuracy)) continue;
-    const Contender seen{as_candidate(search, trial), true};
-    const auto same = std::ranges::find(all, trial.method,
-                                        [](const Contender& other) { return other.run.method; });
-    if (same == all.end()) {
-      all.push_back(seen);
-    } else if (same->is_vague() || seen.handicapped() < same->handicapped()) {
-      *same = seen;
-    }
-  }
-  std::ranges::sort(all, {}, &Contender::handicapped);
-  return all;
-}
-
+// The fastest runs that are known to reach the accuracy.
 Advice advice_for(const Search& search, double accuracy) {
   Advice advice{.accuracy = accuracy};
-  for (const Contender& contender : contenders(search, accuracy)) {
-    const Candidate& c = contender.run;
+  std::vector<Candidate> known;
+  for (const Trial& trial : search.trials()) {
+    if (search.is_known(trial, accuracy))
+      known.push_back({trial.method, trial.value, search.bound(trial)->error, trial.seconds});
+  }
+  std::ranges::sort(known, {}, &Candidate::seconds);
+  for (const Candidate& c : known) {
+    if (!advice.take) advice.take = c;
+    if (!advice.runner_up && c.method != advice.take->method) advice.runner_up = c;
     if (c.method->family == Family::sundials) {
       keep_faster(advice.sundials, c);
     } else {
       keep_faster(c.method->is(Trait::implicit) ? advice.own_implicit : advice.own_explicit, c);
     }
-    if (contender.is_vague()) continue;
-    if (!advice.take) {
-      advice.take = c;
-      advice.is_seen = contender.is_seen;
-    } else if (!advice.runner_up) {
-      advice.runner_up = c;
-    }
-  }
-  if (!advice.take) {
-    advice.why = search.most_accurate()    ? "no method is expected to reach this accuracy"
-                 : search.trials().empty() ? "no run was made"
-                                           : fmt::format("no run reached the end: {}",
-                                                         search.trials().back().summary.message);
-    return advice;
   }
   return advice;
 }
 
-// Makes the advised runs, from the coarsest accuracy on, while there is time. Each run corrects the
-// forecast for the next.
-void try_out(Search& search, const std::vector<double>& coarse_first,
-             std::chrono::steady_clock::time_point begin) {
-  double longest = 0;
-  for (const double accuracy : coarse_first) {
-    const Advice advice = advice_for(search, accuracy);
-    if (advice.take) longest = std::max(longest, advice.take->seconds);
-  }
-  const double allowed =
-      std::max(for_runs, std::min(of_the_run * longest, search.seconds_worth_trying()));
-  search.stop_after(allowed);
-  for (const double accuracy : coarse_first) {
-    // An attempt makes the advised run, its check, and runs that may be faster. The advice may then
-    // differ: it is tried again.
-    constexpr double with_its_check = 3;
-    for (int attempt = 0; attempt < 3; ++attempt) {
-      const double left = allowed - seconds_since(begin);
-      const Advice advice = advice_for(search, accuracy);
-      if (!advice.take || advice.is_seen || advice.take->seconds > left) break;
-      if (attempt == 0 && with_its_check * advice.take->seconds < left) {
-        const double share = left / static_cast<double>(2 * coarse_first.size());
-        search.race(search.find(accuracy), accuracy, share);
-      } else {
-        search.try_once(*advice.take, left);
-      }
-    }
-  }
-}
-
-// Measures how fast two motions part whose starts differ by one rounding. It repeats the most
-// accurate run that takes at most `for_twin` seconds.
-void see_chaos(Advices& all, const Search& search) {
-  const Trial* best = search.most_accurate(true, for_twin);
-  if (!best) return;
-  if (const auto parted = parting_of_twins(search.stage(), *best, for_twin)) {
-    all.horizon = parted->horizon;
-    all.lyapunov = parted->lyapunov;
-  }
-}
-
-// Withdraws the advice that no run has confirmed: beyond the horizon no run is right.
-void refuse_chaos(Advices& all) {
-  for (Advice& advice : all.for_each) {
-    if (!advice.take || advice.is_seen) continue;
-    advice = {.accuracy = advice.accuracy,
-              .why = fmt::format("the motion is chaotic: from t = {:.3g} s on nobody knows its "
-                                 "positions; ask for an earlier end, or for --accuracy-of energy",
-                                 all.horizon)};
-  }
-}
-
-// SUNDIALS' methods choose their steps, so their error and time are known from runs only. The
-// explicit method is tried for each accuracy, the implicit one for the coarsest, until
-// `for_sundials`.
-void try_sundials(Search& search, const std::vector<double>& coarse_first,
-                  std::chrono::steady_clock::time_point begin) {
+// Runs of SUNDIALS' methods with error control, of the families that were not tried, while
+// `seconds` last: they are compared only.
+void try_sundials(Search& search, double accuracy, double seconds) {
   constexpr double tolerance = 0.1;  // of the accuracy
-  const auto try_one = [&](const char* name, double accuracy) {
-    const double left = for_sundials - seconds_since(begin);
-    const double rtol = std::clamp(tolerance * accuracy, 1e-13, 1e-2);
-    if (left > 0) search.try_once({find_method(name), rtol, 0, 0}, left);
-  };
-  for (const double accuracy : coarse_first) try_one("arkode_erk4", accuracy);
-  try_one("cvode_bdf", coarse_first.front());
+  const auto begin = clock_now();
+  const System& system = search.stage().model().system();
+  for (const Method& method : methods()) {
+    const double left = seconds - seconds_since(begin);
+    if (left <= 0) break;
+    if (method.family != Family::sundials || method.knob != Knob::rtol ||
+        !method.stock_of.empty() || !applies_to(method, system) || method.order < 4 ||
+        (system.has_massless() && !method.is(Trait::accepts_massless)))
+      continue;
+    search.try_once(method, std::clamp(tolerance * accuracy, 1e-13, 1e-2), left);
+  }
 }
 
 Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies) {
@@ -172,8 +67,7 @@ Advices of_nothing(const ReducedScene& model, double until, const std::vector<do
   const Answer rest = solve(model, until, {});
   for (const double accuracy : accuracies) {
     all.for_each.push_back({.accuracy = accuracy,
-                            .take = Candidate{rest.method, rest.value, rest.error_estimate, 0},
-                            .is_seen = true});
+                            .take = Candidate{rest.method, rest.value, rest.error_estimate, 0}});
   }
   return all;
 }
@@ -186,7 +80,7 @@ double Advice::margin() const {
 }
 
 Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
-               AccuracyOf of) {
+               AccuracyOf of, const Scene* drawn) {
   const auto begin = clock_now();
   for (const double accuracy : accuracies) require_accuracy(accuracy);
   if (accuracies.empty()) throw std::invalid_argument("advise: no accuracy is given");
@@ -196,21 +90,24 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   if (!model.system().has_stiffness())
     throw std::invalid_argument(
         "advise: the system has no stiffness K, which its frequencies follow from");
-  Search search(model, until, of, infinity);
+  Search search(model, until, of, infinity, drawn);
   Advices all{.horizon = infinity};
-  if (search.survey(std::ranges::min(accuracies))) {
-    if (search.forecast()) {
-      std::vector<double> coarse_first = accuracies;
-      std::ranges::sort(coarse_first, std::ranges::greater());
-      try_out(search, coarse_first, begin);
-      see_chaos(all, search);
-      try_sundials(search, coarse_first, begin);
-    } else {
-      for (const double accuracy : accuracies) search.find(accuracy);
-    }
+  // The judge of the smallest accuracy judges for the others.
+  std::vector<double> fine_first = accuracies;
+  std::ranges::sort(fine_first);
+  for (const double accuracy : fine_first) search.find(accuracy);
+  constexpr double for_sundials = 0.1;  // of the time so far, and seconds at least
+  for (const double accuracy : fine_first)
+    try_sundials(search, accuracy, for_sundials * std::max(1.0, seconds_since(begin)));
+  for (const double accuracy : accuracies) {
+    Advice advice = advice_for(search, accuracy);
+    if (!advice.take) advice.why = why_not(search, accuracy, "").why;
+    all.for_each.push_back(advice);
   }
-  for (const double accuracy : accuracies) all.for_each.push_back(advice_for(search, accuracy));
-  if (of != AccuracyOf::energy && all.horizon <= until) refuse_chaos(all);
+  if (const auto parted = parting(search); parted && of != AccuracyOf::energy) {
+    all.horizon = parted->horizon;
+    all.lyapunov = parted->lyapunov;
+  }
   all.w_start = all.w_motion = search.w_start();
   if (search.forecast()) {
     all.w_motion = search.forecast()->w_motion();
@@ -225,7 +122,7 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
                AccuracyOf of) {
   const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
-  return advise(ReducedScene(start), until, accuracies, of);
+  return advise(ReducedScene(start), until, accuracies, of, &start);
 }
 
 }  // namespace qddot::inline measure

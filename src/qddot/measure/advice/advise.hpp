@@ -12,10 +12,10 @@ namespace qddot::inline measure {
 // The advice for one accuracy.
 struct Advice {
   double accuracy = 0;
-  // The run to take. Empty if no run is expected to reach the accuracy; `why` then says the reason.
+  // The run to take, which was made: its error is a bound. Empty if no run is known to reach the
+  // accuracy; `why` then says the reason.
   std::optional<Candidate> take{};
   std::string why{};
-  bool is_seen = false;  // whether the error comes from a run and its check, not from the forecast
   // The fastest of the other methods, and the fastest of each family, where known.
   std::optional<Candidate> runner_up{}, own_explicit{}, own_implicit{}, sundials{};
 
@@ -40,10 +40,10 @@ struct Advices {
 };
 
 // Finds the method that reaches each accuracy in the least time. An accuracy is a relative error:
-// of the positions at `until` [s], or as `of` says. The runs made for this take at most half a
-// second together, or up to about twice the run that is advised. Throws as solve() does.
+// of the positions at `until` [s], or as `of` says. All runs that it names were made and judged, as
+// in solve(). `drawn` is as there. Throws as solve() does.
 Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
-               AccuracyOf of = AccuracyOf::positions);
+               AccuracyOf of = AccuracyOf::positions, const Scene* drawn = nullptr);
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
                AccuracyOf of = AccuracyOf::positions);
 

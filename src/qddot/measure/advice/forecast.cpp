@@ -8,133 +8,79 @@
 #include "qddot/measure/advice/frequency_error.hpp"
 #include "qddot/measure/advice/step_cost.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
-#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
 namespace {
 
-constexpr double without_end = std::numeric_limits<double>::infinity();
+constexpr double unknown = std::numeric_limits<double>::infinity();
 // Steps are chosen this far below the stability limit. The largest frequency is known at some times
 // of the motion only, and may be larger between them.
 constexpr double below_limit = 0.95;
 // Steps are chosen this far below a step size that failed.
 constexpr double below_failure = 0.8;
-// Implicit methods do not resolve the fast vibrations that w_p contains. Their sensitivity is
-// smaller by this factor, the median of the training cases.
-constexpr double implicit_share = 0.3;
-// Seconds of a dense eigenproblem of n unknowns are about this times n^3.
-constexpr double seconds_of_eigenproblem = 1.3e-9;
-constexpr double largest_exact = 2000;  // unknowns of a part; the limit of method `exact`
-// An error that exceeds its forecast by this factor shows that errors grow exponentially.
-constexpr double grows = 30;
 // A run gives no forecast for knobs that are finer or coarser by more than this factor.
 constexpr double farthest = 100;
 
-bool is_told_by_frequency(const Method& method) {
-  return method.order > 0 && has_linear_step(method);
-}
-
 }  // namespace
+
+bool is_forecast_by_frequency(const Method& method) {
+  return method.order > 1 && !method.is(Trait::implicit) && has_linear_step(method);
+}
 
 double power_of_error(const Method& method) { return method.knob == Knob::rtol ? 1 : method.order; }
 
-double seconds_of_exact(const ReducedScene& model) {
-  constexpr double least = 1e-6;
-  if (!model.system().stiffness_is_constant()) return without_end;
-  double cubes = 0;
-  for (const Index n : model.unknowns_by_part()) {
-    if (static_cast<double>(n) > largest_exact) return without_end;
-    cubes += std::pow(static_cast<double>(n), 3);
-  }
-  return least + seconds_of_eigenproblem * cubes;
-}
-
 Forecast::Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion,
-                   double step_seconds)
+                   double force_seconds)
     : stage_(stage),
       own_(own),
       w_motion_(w_motion),
-      step_seconds_(step_seconds),
+      force_seconds_(force_seconds),
       sensitivity_(own.speed * stage.until()) {}
 
-void Forecast::learn_frequencies(const OwnFrequencies& own) {
-  own_ = own;
-  sensitivity_ = own.speed * stage_.until();
-  by_method_.clear();
-  by_order_.clear();
-}
-
-bool Forecast::has_learned(const Method& method) const {
-  if (!is_told_by_frequency(method)) return seen_.contains(&method);
-  return method.is(Trait::implicit) ? by_method_.contains(&method)
-                                    : by_order_.contains(method.order);
-}
-
 double Forecast::doubt(const Method& one, const Method& other) const {
-  if (&one == &other) return doubts[0];
-  return has_learned(one) && has_learned(other) ? doubts[1] : doubts[2];
+  constexpr double of_seen = 1.5, of_unseen = 4;
+  if (&one == &other) return 1;
+  return has_seen(one) && has_seen(other) ? of_seen : of_unseen;
 }
 
-bool Forecast::has_seen(const Method& method) const {
-  return seen_.contains(&method) || by_method_.contains(&method);
+double Forecast::by_frequency(const Method& method, double value) const {
+  return sensitivity_ * frequency_error(method, value * own_.at(method.order));
 }
 
-double Forecast::sensitivity(const Method& method) const {
-  const auto own = by_method_.find(&method);
-  if (own != by_method_.end()) return sensitivity_ * own->second;
-  if (method.is(Trait::implicit)) return sensitivity_ * implicit_share;
-  if (by_order_.empty()) return sensitivity_;
+// Corrections of orders that differ by 2 or 4 are correlated, those of orders 2 and 10 are not: the
+// slopes of their logarithms are 0.7 and 0 over the training cases.
+double Forecast::correction(const Method& method) const {
+  if (by_order_.empty()) return 1;
+  constexpr double unrelated = 8;
   const auto orders_apart = [&](const auto& known) { return std::abs(known.first - method.order); };
   const auto nearest = std::ranges::min_element(by_order_, {}, orders_apart);
-  // Corrections of orders that differ by 2 or 4 are correlated, those of orders 2 and 10 are not:
-  // the slopes of their logarithms are 0.7 and 0 over the training cases. A growth of errors
-  // affects all orders.
-  constexpr double unrelated = 8;
-  const double related =
-      nearest->second > grows ? 1 : std::max(0.0, 1 - orders_apart(*nearest) / unrelated);
-  return sensitivity_ * std::pow(nearest->second, related);
+  return std::pow(nearest->second, std::max(0.0, 1 - orders_apart(*nearest) / unrelated));
+}
+
+double Forecast::scale(const Method& method) const {
+  const auto seen = seen_.find(&method);
+  return seen == seen_.end() ? correction(method)
+                             : seen->second.error / by_frequency(method, seen->second.value);
 }
 
 double Forecast::error(const Method& method, double value) const {
-  return truncation(method, value) + rounding(method, value);
-}
-
-double Forecast::truncation(const Method& method, double value) const {
-  if (is_told_by_frequency(method))
-    return sensitivity(method) * frequency_error(method, value * own_.at(method.order));
+  if (is_forecast_by_frequency(method)) return scale(method) * by_frequency(method, value);
   const auto seen = seen_.find(&method);
-  if (seen == seen_.end()) return method.order == 0 ? 0 : without_end;
-  const double least = method.asks(Need::split_forces) ? least_of_split : 0;
-  return std::max(
-      least, seen->second.error * std::pow(value / seen->second.value, power_of_error(method)));
-}
-
-double Forecast::rounding(const Method& method, double value) const {
-  // Each step rounds once. Most of that cancels; 0.02 to 0.5 of it adds up in stiff chains.
-  constexpr double part = 0.1;
-  const double steps =
-      method.knob == Knob::step_size && method.order > 0 ? stage_.until() / value : 1;
-  return machine_epsilon * (1 + part * steps);
+  if (seen == seen_.end()) return method.order == 0 ? 0 : unknown;
+  return seen->second.error * std::pow(value / seen->second.value, power_of_error(method));
 }
 
 double Forecast::seconds(const Method& method, double value) const {
-  if (method.order == 0) return seconds_of_exact(stage_.model());
   const auto seen = seen_.find(&method);
   if (seen != seen_.end()) {
-    // Half of such a step's time is spent on its inner steps, whose number does not depend on the
-    // step size.
-    const double share = method.knob == Knob::rtol         ? 1.0 / method.order
-                         : method.asks(Need::split_forces) ? 0.5
-                                                           : 1;
+    // The number of steps of error-controlled methods falls as rtol^(1/order).
+    const double share = method.knob == Knob::rtol ? 1.0 / method.order : 1;
     return seen->second.seconds * std::pow(seen->second.value / value, share);
   }
-  const double steps = std::max(1.0, std::round(stage_.until() / value)) +
-                       steps_to_begin(method, stage_.model().system());
-  const auto timed = seconds_a_step_.find(&method);
-  const double step = timed != seconds_a_step_.end()
-                          ? timed->second
-                          : step_seconds_ * usual_step_cost(method, stage_.model().system());
-  return steps * step + forces_to_begin(method) * step_seconds_;
+  if (!is_forecast_by_frequency(method)) return unknown;
+  const auto [place, is_new] = forces_a_step_.try_emplace(&method);
+  if (is_new) place->second = forces_a_step(method, stage_.model(), value);
+  return place->second * force_seconds_ * std::max(1.0, std::round(stage_.until() / value));
 }
 
 double Forecast::largest_step(const Method& method) const {
@@ -146,93 +92,57 @@ double Forecast::largest_step(const Method& method) const {
   return h;
 }
 
-std::optional<Candidate> Forecast::from_steps(const Method& method, double error) const {
-  const double until = stage_.until(), w = own_.at(method.order);
-  double h = largest_step(method);
-  if (w > 0 && sensitivity_ > 0)
-    h = std::min(h, largest_h_omega(method, error / sensitivity(method)) / w);
-  if (!(h > 0)) return {};
-  // The number of steps is a multiple of the number of looks, so that no look shortens a step.
-  const double looks = static_cast<double>(stage_.times().size());
-  double steps = std::ceil(until / h * (1 - 1e-9));
-  if (steps > 4 * looks) steps = looks * std::ceil(steps / looks);
-  if (method.recurrence_roots && steps < 2 * method.order) return {};
-  h = until / steps;
-  return Candidate{&method, h, this->error(method, h), seconds(method, h)};
-}
-
-std::optional<Candidate> Forecast::from_seen(const Method& method, double error) const {
-  const auto found = seen_.find(&method);
-  if (found == seen_.end()) return {};
-  const Seen& seen = found->second;
-  const double finer = std::pow(seen.error / error, 1 / power_of_error(method));
-  if (!(finer < farthest && finer > 1 / farthest)) return {};
-  double value = seen.value / finer;
-  // The value lies between the largest step that succeeded and the smallest one that failed.
-  const auto failed = failed_.find(&method);
-  if (failed != failed_.end() && failed->second > seen.value)
-    value = std::min(value, std::sqrt(failed->second * seen.value));
-  if (method.knob == Knob::rtol) value = std::clamp(value, 1e-14, 0.1);
-  if (method.knob == Knob::step_size) {
-    value = stage_.until() / std::ceil(stage_.until() / std::min(value, largest_step(method)));
+std::optional<Candidate> Forecast::candidate(const Method& method, double error) const {
+  const double until = stage_.until();
+  const auto seen = seen_.find(&method);
+  double value = 0;
+  if (is_forecast_by_frequency(method)) {
+    const double w = own_.at(method.order);
+    value = w > 0 && sensitivity_ > 0
+                ? largest_h_omega(method, error / (scale(method) * sensitivity_)) / w
+                : until;
+  } else {
+    if (seen == seen_.end()) return {};
+    const double finer = std::pow(seen->second.error / error, 1 / power_of_error(method));
+    if (!(finer < farthest && finer > 1 / farthest)) return {};
+    value = seen->second.value / finer;
+  }
+  if (method.knob == Knob::rtol) {
+    value = std::clamp(value, 1e-14, 0.1);
+  } else {
+    value = std::min(value, largest_step(method));
+    if (!(value > 0)) return {};
+    const double steps = std::ceil(until / value * (1 - 1e-9));
+    if (method.recurrence_roots && steps < 2 * method.order) return {};
+    value = until / steps;
   }
   return Candidate{&method, value, this->error(method, value), seconds(method, value)};
 }
 
-std::vector<Candidate> Forecast::candidates(double error, bool explicit_steps) const {
-  return candidates([error](const Method&) { return error; }, explicit_steps);
-}
-
-std::vector<Candidate> Forecast::candidates(const std::function<double(const Method&)>& error,
-                                            bool explicit_steps) const {
+std::vector<Candidate> Forecast::candidates(double error) const {
   std::vector<Candidate> all;
   const System& system = stage_.model().system();
   for (const Method& method : methods()) {
-    if (!applies_to(method, system) || !method.stock_of.empty()) continue;
-    if (explicit_steps && (method.is(Trait::implicit) || !is_told_by_frequency(method))) continue;
-    std::optional<Candidate> own;
-    if (method.order == 0) {
-      const double h = stage_.until();
-      own = Candidate{&method, h, machine_epsilon, seconds(method, h)};
-    } else if (!is_told_by_frequency(method)) {
-      own = from_seen(method, error(method));
-    } else if (method.order > 1) {
-      own = from_steps(method, error(method));
-    }
+    if (!applies_to(method, system) || !method.stock_of.empty() || method.order == 0) continue;
+    if (system.has_massless() && !method.is(Trait::accepts_massless)) continue;
+    const auto own = candidate(method, error);
     if (own && std::isfinite(own->seconds)) all.push_back(*own);
   }
   std::ranges::sort(all, {}, &Candidate::seconds);
   return all;
 }
 
-void Forecast::learn_error(const Trial& trial, double error) {
+void Forecast::learn(const Trial& trial, double error) {
   const Method& method = *trial.method;
-  if (method.order == 0 || error == 0) return;
-  if (!is_told_by_frequency(method)) {
-    // An error this large is not proportional to h^order: the step is too long.
-    constexpr double too_long = 0.1;
-    if (error < too_long || method.knob == Knob::rtol) {
-      seen_[&method] = {trial.value, error, trial.seconds};
-    } else {
-      learn_failure(trial);
-    }
-    return;
+  if (method.order == 0 || !(error > 0)) return;
+  seen_[&method] = {trial.value, error, trial.seconds};
+  if (!is_forecast_by_frequency(method)) return;
+  const double expected = by_frequency(method, trial.value);
+  if (std::isfinite(expected) && expected > 0) {
+    by_order_[method.order] = error / expected;
+  } else {
+    seen_.erase(&method);
   }
-  const double expected =
-      sensitivity_ * frequency_error(method, trial.value * own_.at(method.order));
-  constexpr double mostly_rounding = 3;
-  if (!std::isfinite(expected) || expected == 0) return;
-  if (error < mostly_rounding * rounding(method, trial.value)) return;
-  by_method_[&method] = error / expected;
-  if (!method.is(Trait::implicit)) by_order_[method.order] = error / expected;
-}
-
-void Forecast::learn_seconds(const Trial& trial) {
-  if (trial.method->knob != Knob::step_size || trial.method->order == 0) return;
-  const double steps = std::max(1.0, std::round(stage_.until() / trial.value)) +
-                       steps_to_begin(*trial.method, stage_.model().system());
-  const double begin = forces_to_begin(*trial.method) * step_seconds_;
-  seconds_a_step_[trial.method] = std::max(trial.seconds - begin, 0.3 * trial.seconds) / steps;
 }
 
 void Forecast::learn_failure(const Trial& trial) {

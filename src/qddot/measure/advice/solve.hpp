@@ -35,10 +35,9 @@ const char* name(EstimateKind kind);
 
 // The origin of a method that solve() chose.
 enum class AdvisedBy {
-  modes,       // the motion is computed mode by mode, or nothing moves
-  forecast,    // a forecast of errors and times
-  refinement,  // implicit or multirate steps, refined until they agree
-  tolerance,   // IDA at ever smaller tolerances
+  modes,      // the motion is computed mode by mode, or nothing moves
+  forecast,   // a forecast of errors and times
+  tolerance,  // runs with error control, at ever smaller tolerances
 };
 const char* name(AdvisedBy origin);
 
@@ -75,7 +74,10 @@ struct Answer {
 // search for them takes less time than the run itself. Answer::why says if the accuracy cannot be
 // reached: beyond the horizon of a chaotic motion, below its rounding, or by no method. Throws
 // std::invalid_argument for an accuracy or a time out of range, or a system without K.
-Answer solve(const ReducedScene& model, double until, const Wanted& wanted);
+// `drawn`: the scene that the model is the reduction of, if it may leave the symmetry of its
+// reductions by rounding.
+Answer solve(const ReducedScene& model, double until, const Wanted& wanted,
+             const Scene* drawn = nullptr);
 // The same for a scene, with all of its reductions; throws InvalidInput if the scene is wrong.
 Answer solve(const Scene& scene, double until, const Wanted& wanted);
 Answer solve(const Scene& scene, double until, double accuracy);

@@ -5,6 +5,7 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference_rounding.hpp"
 #include "qddot/measure/speed/measurement.hpp"
@@ -16,39 +17,49 @@ namespace {
 // Runs shorter than this [s] are timed again, as the first one runs with cold caches.
 constexpr double short_run = 1e-3;
 constexpr int repeats_of_short = 3;
+// A part that moves by no more roundings of its positions than this has no motion to measure.
+constexpr double roundings_at_rest = 30;
 
 }  // namespace
 
-Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, int looks)
-    : model_(model), until_(until), of_(of) {
-  for (int i = 1; i < looks; ++i) times_.push_back(until * i / looks);
-  times_.push_back(until);
-}
+Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, int looks, const Scene* drawn)
+    : model_(model),
+      until_(until),
+      of_(of),
+      drawn_(drawn),
+      times_(random_times(until, looks)) {}
 
-Trial Stage::run_from(const State& start, const Method& method, double value,
-                      double seconds) const {
+Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
+                      double value, const Limits& limits) const {
   Trial trial{.method = &method, .value = value};
-  const auto integrator =
-      make_integrator(method, model_.system(), options_for(method, value, model_));
+  Options options = options_for(method, value, model);
+  options.most_forces = limits.forces;
+  const auto integrator = make_integrator(method, model.system(), options);
   State state = start;
-  const Deadline deadline(seconds);
-  const bool only_the_end =
-      of_ == AccuracyOf::positions && method.is(Trait::implicit) && method.knob == Knob::step_size;
-  const Observer each{only_the_end ? std::vector{until_} : times_,
-                      [&](const State& seen) { trial.path.push_back(seen); }};
+  const Deadline deadline(limits.seconds);
+  const double energy = model.energy(start);
+  const auto see_energy = [&](const State& seen) {
+    const double gain = model.energy(seen) - energy;
+    trial.energy_gain = std::max(trial.energy_gain, gain);
+    trial.energy_gap = std::max(trial.energy_gap, std::abs(gain));
+  };
+  Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }};
+  if (of_ == AccuracyOf::energy) each.step = see_energy;
   trial.seconds = seconds_of(
       [&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
+  for (const State& seen : trial.path) see_energy(seen);
   if (!trial.reached_end()) stop_if_interrupted();
   return trial;
 }
 
-Trial Stage::run(const Method& method, double value, double seconds) const {
-  Trial trial = run_from(model_.initial(), method, value, seconds);
-  if (of_ == AccuracyOf::energy) {
-    const double energy = model_.energy(model_.initial());
-    for (const State& seen : trial.path)
-      trial.energy_gap = std::max(trial.energy_gap, std::abs(model_.energy(seen) - energy));
-  }
+Trial Stage::run(const Method& method, double value, const Limits& limits) const {
+  return run_from(model_, model_.initial(), method, value, limits);
+}
+
+Trial Stage::run_pushed(const Method& method, double value, const Limits& limits) const {
+  Trial trial = run_from(model_, displaced_start(model_, scales_, machine_epsilon), method, value,
+                         limits);
+  trial.is_pushed = true;
   return trial;
 }
 
@@ -69,6 +80,12 @@ void Stage::measure_by(const Trial& trial) {
   for (const State& seen : trial.path) extend(scales_, model_, seen);
 }
 
+bool Stage::rests() const {
+  return std::ranges::all_of(scales_.parts, [](const PartScale& part) {
+    return part.displacement <= roundings_at_rest * machine_epsilon * part.extent;
+  });
+}
+
 double Stage::energy_error(const Trial& trial) const {
   return scales_.kinetic > 0 ? trial.energy_gap / scales_.kinetic : trial.energy_gap;
 }
@@ -80,22 +97,38 @@ double Stage::distance(const Trial& one, const Trial& other) const {
 
 std::vector<double> Stage::distances(const Trial& one, const Trial& other) const {
   std::vector<double> all;
-  if (one.path.size() != other.path.size() || one.path.size() != times_.size()) return all;
-  for (std::size_t i = 0; i < times_.size(); ++i)
+  for (std::size_t i = 0; i < std::min(one.path.size(), other.path.size()); ++i)
     all.push_back(errors_between(model_, one.path[i], other.path[i], 0, scales_).position);
   return all;
 }
 
-std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& trial, double seconds) {
-  const State pushed = displaced_start(stage.model(), stage.scales(), machine_epsilon);
-  const Trial twin = stage.run_from(pushed, *trial.method, trial.value, seconds);
-  if (!twin.reached_end()) return {};
-  const std::vector<double> seen = stage.distances(trial, twin);
-  if (seen.empty()) return {};
-  std::vector<double> times{0}, distances{machine_epsilon};
-  times.insert(times.end(), stage.times().begin(), stage.times().end());
-  distances.insert(distances.end(), seen.begin(), seen.end());
-  return divergence(times, distances);
+bool Stage::is_reduced_by_symmetry() const {
+  return drawn_ && std::ranges::any_of(model_.findings(), [](const Finding& finding) {
+           return finding.reduction == Reduction::dimension ||
+                  finding.reduction == Reduction::mirror;
+         });
+}
+
+std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial,
+                                                     const Limits& limits) const {
+  const ReducedScene drawn(
+      *drawn_, Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  Scales scales;
+  extend(scales, drawn, drawn.initial());
+  // A node that starts at the origin has no coordinate to round; its displacement is rounded
+  // instead.
+  for (PartScale& part : scales.parts) {
+    if (part.extent == 0) part.displacement = scales_.displacement;
+  }
+  const State start = displaced_start(drawn, scales, machine_epsilon);
+  const Trial pushed = run_from(drawn, start, *trial.method, trial.value, limits);
+  std::vector<double> all;
+  if (!pushed.reached_end()) return all;
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    all.push_back(position_error(drawn.expand(pushed.path[i]),
+                                 model_.expand(trial.path[i]), scales_));
+  }
+  return all;
 }
 
 }  // namespace qddot::inline measure

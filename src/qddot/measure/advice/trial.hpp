@@ -1,11 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/error.hpp"
-#include "qddot/measure/reference/divergence.hpp"
 
 namespace qddot::inline measure {
 
@@ -19,27 +20,34 @@ struct Trial {
   double value = 0;  // of its knob: h [s] or rtol
   Summary summary{};
   double seconds = 0;  // wall time of the run
-  // States at the times that the run reached, the end last; or the end alone.
+  // States at the times that the run reached, the end last.
   std::vector<State> path{};
-
-  double energy_gap = 0;   // largest |E - E(0)| at these times [J]
-  bool is_gamble = false;  // may be right by chance; checks no other run
+  // The largest |E - E(0)| and the largest E - E(0) [J], at all steps if the energy is asked for,
+  // and at the times of the stage.
+  double energy_gap = 0, energy_gain = 0;
+  bool is_pushed = false;  // began one rounding away, so it may check a run but be no answer
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
 
-// The motion that trials compute: a model up to a time, seen at the ends of `looks` equal parts of
-// that time. Implicit methods of fixed steps are seen at the end alone if only positions there are
-// asked for: a look between two steps would add a step of another length.
+// The limits of a run. A limit of forces ends it after the same work on every machine.
+struct Limits {
+  double seconds = std::numeric_limits<double>::infinity();
+  std::int64_t forces = 0;  // evaluations of f; 0: no limit
+};
+
+// The motion that trials compute: a model up to a time, seen at random times. No motion can be in
+// step with these looks (see random_times.hpp).
 class Stage {
  public:
-  // Borrows the model.
-  Stage(const ReducedScene& model, double until, AccuracyOf of, int looks);
+  // Borrows the model and, if given, the scene that it is the reduction of.
+  Stage(const ReducedScene& model, double until, AccuracyOf of, int looks,
+        const Scene* drawn = nullptr);
 
-  // Runs the method to the end, for `seconds` at most.
-  Trial run(const Method& method, double value, double seconds) const;
-  // The same from another start.
-  Trial run_from(const State& start, const Method& method, double value, double seconds) const;
+  // Runs the method from the start to the end.
+  Trial run(const Method& method, double value, const Limits& limits) const;
+  // The same from a start that is one rounding away.
+  Trial run_pushed(const Method& method, double value, const Limits& limits) const;
   // Repeats a trial that reached the end in less than a millisecond; its time becomes the least of
   // several runs.
   void time_again(Trial& trial) const;
@@ -47,31 +55,39 @@ class Stage {
   // Takes the scales of errors from the trial, which reached the end. Errors need this first.
   void measure_by(const Trial& trial);
 
-  // The distance of two trials that reached the end, relative to the motion. It is the one at the
-  // end, or the largest at any of the times if the path is asked for.
+  // The distance of two trials that reached the end, relative to the motion: at the end, or the
+  // largest at any look if the path is asked for.
   double distance(const Trial& one, const Trial& other) const;
-  // The distance at each of the times; empty if one of the two was seen at the end alone.
+  // The distance at each look.
   std::vector<double> distances(const Trial& one, const Trial& other) const;
+  // Whether nothing moves by more than the rounding of its positions.
+  bool rests() const;
 
-  // The largest relative error of the energy at the times of a trial that reached the end, if the
-  // energy is asked for.
+  // Whether a dimension or a mirror was reduced of the scene that was drawn.
+  bool is_reduced_by_symmetry() const;
+  // Repeats the trial with all drawn nodes in all drawn dimensions, from a start that is one
+  // rounding away, and gives the distances of the two. Empty if the run fails.
+  std::vector<double> distances_out_of_symmetry(const Trial& trial, const Limits& limits) const;
+
+  // The largest relative error of the energy on the way, if the energy is asked for.
   double energy_error(const Trial& trial) const;
 
   const ReducedScene& model() const { return model_; }
   double until() const { return until_; }
+  AccuracyOf of() const { return of_; }
   const std::vector<double>& times() const { return times_; }
   const Scales& scales() const { return scales_; }
 
  private:
+  Trial run_from(const ReducedScene& model, const State& start, const Method& method, double value,
+                 const Limits& limits) const;
+
   const ReducedScene& model_;
   double until_;
   AccuracyOf of_;
+  const Scene* drawn_;
   std::vector<double> times_;
   Scales scales_;
 };
-
-// Repeats the trial from a start that is one rounding away, for `seconds` at most, and measures how
-// the two part. Empty if the repetition does not reach the end.
-std::optional<Divergence> parting_of_twins(const Stage& stage, const Trial& trial, double seconds);
 
 }  // namespace qddot::inline measure

@@ -1,0 +1,97 @@
+#include "qddot/measure/advice/failure.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "qddot/measure/motion/timing.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+
+namespace qddot::inline measure {
+namespace {
+
+// The last look [s] until which one rounding changes the motion by less than the accuracy.
+double known_until(const Search& search, double accuracy) {
+  double until = 0;
+  const std::vector<double>& differences = search.conditioning()->differences;
+  for (std::size_t i = 0; i < differences.size() && 2 * differences[i] <= accuracy; ++i)
+    until = search.stage().times()[i];
+  return until;
+}
+
+std::string rounding_in_words(const Failure& failure, const Search& search, double accuracy) {
+  const Conditioning& found = *search.conditioning();
+  const double until = search.stage().until(), known = known_until(search, accuracy);
+  const std::string instead =
+      known > 0 ? fmt::format("; up to t = {:.3g} s it can be reached", known) : "";
+  if (found.leaves_by > found.effect) {
+    return fmt::format(
+        "rounding moves the drawn nodes out of their line, plane or mirror symmetry, by {:.1e} of "
+        "the motion{}",
+        found.leaves_by / 2, instead);
+  }
+  if (failure.horizon <= until) {
+    return fmt::format(
+        "the motion is chaotic: from t = {:.3g} s on nobody knows its positions (errors grow by a "
+        "factor of e in {}){}; ask for an earlier end, or for --accuracy-of energy",
+        failure.horizon, duration_in_words(1 / failure.lyapunov), instead);
+  }
+  if (failure.lyapunov > 0) {
+    return fmt::format(
+        "the motion is chaotic: rounding has grown beyond the accuracy by t = {:g} s{}", until,
+        instead);
+  }
+  return fmt::format("one rounding of the start changes the motion by {:.1e} of it{}",
+                     found.effect / 2, instead);
+}
+
+}  // namespace
+
+std::optional<Divergence> parting(const Search& search) {
+  const auto& conditioning = search.conditioning();
+  if (!conditioning || conditioning->differences.empty()) return {};
+  std::vector<double> times{0}, differences{machine_epsilon};
+  const auto& looks = search.stage().times();
+  times.insert(times.end(), looks.begin(), looks.end());
+  differences.insert(differences.end(), conditioning->differences.begin(),
+                     conditioning->differences.end());
+  return divergence(times, differences);
+}
+
+Failure why_not(const Search& search, double accuracy, const std::string& stopped_by) {
+  Failure failure;
+  const Trial* best = search.best();
+  const std::string reached =
+      best ? fmt::format("the smallest known error bound is {:.1e}", search.bound(*best)->error)
+           : "no error is known";
+  const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
+  const auto& conditioning = search.conditioning();
+  const auto slack = std::ranges::find_if(search.trials(), [](const Trial& trial) {
+    return trial.summary.outcome == Outcome::went_slack;
+  });
+  // An effect this large leaves no room for a run's own error.
+  constexpr double much = 0.5;
+  failure.is_rounding =
+      conditioning && search.stage().of() != AccuracyOf::energy &&
+      std::max(conditioning->effect, conditioning->leaves_by) > much * accuracy;
+  if (const auto parted = parting(search); parted && failure.is_rounding) {
+    failure.horizon = parted->horizon;
+    failure.lyapunov = parted->lyapunov;
+  }
+  if (!stopped_by.empty()) {
+    failure.why = fmt::format("{}; {}", stopped_by, reached);
+  } else if (slack != search.trials().end()) {
+    failure.why = slack->summary.message;
+  } else if (failure.is_rounding) {
+    failure.why = rounding_in_words(failure, search, accuracy);
+    if (best && !(failure.horizon <= search.stage().until())) failure.why += "; " + reached;
+  } else if (last && !last->reached_end() && !best) {
+    failure.why = fmt::format("no run reached the end; {} at {:g}: {}", last->method->name,
+                              last->value, last->summary.message);
+  } else {
+    failure.why = fmt::format("no method is known to reach this accuracy; {}", reached);
+  }
+  return failure;
+}
+
+}  // namespace qddot::inline measure

@@ -1,0 +1,210 @@
+// The runs whose errors a search knows, and by which it knows those of others.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/advice/step_cost.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+
+namespace qddot::inline measure {
+namespace {
+
+// A judge's own error is at most this part of the accuracy, so that the bounds of others are tight.
+constexpr double part_of_judge = 0.2;
+// Runs draw together if the finer two of three differ by this part of what the outer two do. In the
+// study's table, the error of the coarsest was then within twice its distance in 1126 of 1127.
+constexpr double drawn_together = 1.0 / 3, within = 2;
+// Work [evaluations of f, times unknowns and what a call costs beside them]. Runs with error
+// control judge a motion if they take about this: 20 ms.
+constexpr double little_work = 5e6;
+// The same for the last attempts, before an accuracy is refused.
+constexpr double much_work = 5e8;
+// Tolerances below this are lost in the rounding of a step.
+constexpr double least_tolerance = 1e-14;
+// A call of f costs about as much as so many unknowns.
+constexpr double call = 20;
+
+}  // namespace
+
+std::int64_t Search::forces_within(double work) const {
+  return static_cast<std::int64_t>(
+      std::max(100.0, work / (call + static_cast<double>(stage_.model().system().size()))));
+}
+
+// Repeats the judge from a start one rounding away, in all that was drawn.
+void Search::condition(const Trial& judge) {
+  const Trial& twin = run(*judge.method, judge.value, {}, true);
+  if (!twin.reached_end()) return;
+  conditioning_ = Conditioning{.effect = 2 * distance(judge, twin),
+                               .differences = stage_.distances(judge, twin)};
+  condition_symmetry(judge);
+}
+
+void Search::condition_symmetry(const Trial& judge) {
+  if (!stage_.is_reduced_by_symmetry()) return;
+  const auto left = stage_.distances_out_of_symmetry(
+      judge, {.seconds = seconds_left(), .forces = forces_within(much_work)});
+  if (left.empty()) return;
+  if (!conditioning_) conditioning_.emplace();
+  conditioning_->leaves_by =
+      2 * (stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back());
+  if (conditioning_->leaves_by > conditioning_->effect) conditioning_->differences = left;
+}
+
+// Three runs of one method with error control, at tolerances that fall by tens. If they draw
+// together, the finest is within the distance of the finer two.
+bool Search::judge_by_tolerance(const Method& method, double accuracy,
+                                std::int64_t& forces_left) {
+  constexpr double by_tens = 10, largest_tolerance = 1e-2;
+  std::vector<const Trial*> runs;
+  for (double rtol = std::min(accuracy, largest_tolerance); rtol >= least_tolerance;
+       rtol /= by_tens) {
+    if (seconds_left() <= 0 || forces_left <= 0) return false;
+    const Trial& trial = run(method, rtol, {.forces = forces_left});
+    forces_left -= trial.summary.counts.force_evaluations;
+    if (!trial.reached_end()) {
+      if (trial.summary.outcome == Outcome::over_budget || !runs.empty()) return false;
+      continue;
+    }
+    measure_by(trial);
+    if (!runs.empty() && distance_on_the_way(*runs.back(), trial) == 0)
+      runs.pop_back();  // the same steps, which judge nothing
+    runs.push_back(&trial);
+    if (runs.size() < 3) continue;
+    const Trial &c = *runs.back(), &b = *runs[runs.size() - 2], &a = *runs[runs.size() - 3];
+    const double outer = distance_on_the_way(a, c), inner = distance_on_the_way(b, c);
+    const bool together = inner <= drawn_together * outer;
+    if (together || within * std::max(inner, outer) <= part_of_judge * accuracy) {
+      judges_[&a] = {within * std::max(distance(a, c), distance(a, b)), &c, false};
+      judges_[&b] = {within * std::max(inner, distance(b, c)), &c, false};
+      judges_[&c] = {within * inner, &b, true};
+    }
+    const bool is_judge = judges_.contains(&c) && judges_[&c].error <= part_of_judge * accuracy;
+    // Runs that no longer draw together may have met rounding.
+    if (is_judge || !together) condition(c);
+    if (is_hopeless(accuracy)) return false;
+    if (is_judge) return true;
+  }
+  return false;
+}
+
+// The methods with error control that fit the system, the most suitable first.
+std::vector<const Method*> Search::with_error_control(bool implicitly, double accuracy) const {
+  std::vector<const Method*> all;
+  const System& system = stage_.model().system();
+  for (const Method& method : methods()) {
+    if (method.knob != Knob::rtol || method.is(Trait::implicit) != implicitly ||
+        !method.stock_of.empty() || !applies_to(method, system) ||
+        method.asks(Need::split_forces) ||
+        (system.has_massless() && !method.is(Trait::accepts_massless)))
+      continue;
+    all.push_back(&method);
+  }
+  // Order 8 suits errors from 1e-6 on, order 12 smaller ones.
+  constexpr double orders_beyond = 2, least_order = 8, largest_order = 12;
+  const double order =
+      std::clamp(orders_beyond - std::log10(accuracy), least_order, largest_order);
+  std::ranges::stable_sort(all, {}, [&](const Method* method) {
+    return std::pair(method->family == Family::sundials, std::abs(method->order - order));
+  });
+  return all;
+}
+
+bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces) {
+  std::vector<const Method*> all = with_error_control(implicitly, accuracy);
+  constexpr std::size_t most_methods = 2;
+  if (all.size() > most_methods) all.resize(most_methods);
+  for (const Method* method : all) {
+    if (judge_by_tolerance(*method, accuracy, most_forces)) return true;
+    // A motion that rounding leaves unknown is so for all methods.
+    if (is_hopeless(accuracy)) return false;
+  }
+  return false;
+}
+
+bool Search::judge_in_closed_form() {
+  const ReducedScene& model = stage_.model();
+  if (!model.system().stiffness_is_constant()) return false;
+  // An eigenproblem of n unknowns takes about n^3 times this many forces' unknowns.
+  constexpr double of_eigenproblem = 0.5;
+  double cubes = 0;
+  for (const Index n : model.unknowns_by_part()) cubes += std::pow(static_cast<double>(n), 3);
+  const double explicitly = steps_of_verlet() * (call + static_cast<double>(model.system().size()));
+  if (of_eigenproblem * cubes > std::max(little_work / 10, explicitly)) return false;
+  const Method* exact = nullptr;
+  for (const Method& method : methods()) {
+    if (method.order == 0 && applies_to(method, model.system())) exact = &method;
+  }
+  if (!exact) return false;
+  const Trial& trial = run(*exact, stage_.until(), {});
+  if (!trial.reached_end()) return false;
+  measure_by(trial);
+  // A motion computed mode by mode has w_max^2 to its last digit. So a slower frequency w has an
+  // error of w_max^2 / (2 w) roundings, for a time t.
+  const Scales& scales = stage_.scales();
+  const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
+  const double phase = bound_of_w_ * stage_.until() * (slow > 0 ? std::max(1.0, bound_of_w_ / slow) : 1);
+  judges_[&trial] = {4 * machine_epsilon * (1 + phase), nullptr, false};
+  condition(trial);
+  if (stage_.is_reduced_by_symmetry()) {
+    // Out of the line the motion is not linear.
+    constexpr double tolerance = 1e-6;
+    const Trial& other = run(*with_error_control(false, tolerance).front(), tolerance,
+                             {.forces = forces_within(much_work)});
+    if (other.reached_end()) condition_symmetry(other);
+  }
+  return true;
+}
+
+bool Search::judge(double accuracy) {
+  const System& system = stage_.model().system();
+  if (w_start_ == 0) w_start_ = bound_of_w_;
+  if (judge_in_closed_form()) return true;
+  if (stage_.of() == AccuracyOf::energy) return judge_energy(accuracy);
+  if (system.has_massless())
+    return judge_by_error_control(accuracy, true, forces_within(much_work));
+  constexpr double forces_of_judge = 50;  // over those of Verlet's method at its limit
+  const auto few = forces_within(little_work);
+  if (forces_of_judge * steps_of_verlet() < static_cast<double>(few)) {
+    if (judge_by_error_control(accuracy, false, few)) return true;
+  } else {
+    // An implicit run takes far fewer steps if the fast vibrations are hardly excited.
+    constexpr double share = 0.05;
+    if (judge_by_error_control(accuracy, true,
+                               static_cast<std::int64_t>(share * steps_of_verlet())))
+      return true;
+  }
+  if (is_hopeless(accuracy)) return false;
+  is_judged_by_forecast_ = judge_by_forecast(accuracy);
+  if (is_judged_by_forecast_) return true;
+  return !is_hopeless(accuracy) &&
+         judge_by_error_control(accuracy, false, forces_within(much_work));
+}
+
+// The energy of a run is its own judge, as the exact motion keeps it. A run with error control
+// gives the scale: the largest kinetic energy.
+bool Search::judge_energy(double accuracy) {
+  constexpr double least = 1e-13;
+  const bool implicitly = stage_.model().system().has_massless();
+  for (const Method& method : methods()) {
+    if (method.knob != Knob::rtol || method.is(Trait::implicit) != implicitly ||
+        !method.stock_of.empty() || !applies_to(method, stage_.model().system()) ||
+        (implicitly && !method.is(Trait::accepts_massless)))
+      continue;
+    for (double rtol = std::min(0.1 * accuracy, 1e-3); rtol >= least; rtol /= 10) {
+      const Trial& trial = run(method, rtol, {.forces = forces_within(much_work)});
+      if (!trial.reached_end()) break;
+      measure_by(trial);
+      judges_[&trial] = {0, nullptr, false};
+      if (is_known(trial, accuracy)) return true;
+    }
+    if (!judges_.empty()) return false;
+  }
+  return false;
+}
+
+}  // namespace qddot::inline measure
