@@ -22,10 +22,13 @@
 #include <fmt/format.h>
 
 #include "experiments/advice/case_result.hpp"
+#include "experiments/advice/hard_result.hpp"
 #include "experiments/advice/step_costs.hpp"
 #include "experiments/advice/worth.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
+#include "experiments/kit/whole_file.hpp"
+#include "qddot/scene/scene_file.hpp"
 
 int main(int argc, char** argv) {
   using namespace qddot;
@@ -44,6 +47,9 @@ int main(int argc, char** argv) {
           .positive("the seconds of a reference");
   auto step_costs = p.flag(
       "--step-costs", "instead, time a step of each method at four sizes, into step_costs.csv");
+  auto hard = p.flag("--hard", "draw hard motions: small ones, judged against their true motion");
+  auto scenes =
+      p.flag("--scenes", "with --hard, write the scene of each case, and print a line for each");
   p.out("the folder for cases.csv and worth.csv");
 
   const auto time_steps = [&] {
@@ -103,5 +109,39 @@ int main(int argc, char** argv) {
           return p.origin();
         });
   };
-  return p.run(argc, argv, [&] { return step_costs ? time_steps() : judge_cases(); });
+  const auto judge_hard_cases = [&] {
+    auto& table = p.table("hard.csv", hard_columns());
+    auto& worth = p.table<Figure>("hard_worth.csv", {{"of", &Figure::of},
+                                                     {"figure", &Figure::name},
+                                                     {"value", &Figure::value},
+                                                     {"cases", &Figure::cases},
+                                                     {"meaning", &Figure::meaning}});
+    return p.write([&] {
+      std::vector<HardResult> results(static_cast<std::size_t>(*cases));
+      progress().begin(results.size());
+      side_by_side(
+          results.size(),
+          [&](std::size_t i) {
+            const std::uint64_t number = static_cast<std::uint64_t>(first) + i;
+            const HardCase drawn = hard_case(number);
+            if (scenes && drawn.pairs.empty()) {
+              WholeFile file(fmt::format("{}/case_{}.toml", p.folder(), number));
+              file.write(signed_text(to_toml(drawn.scene)));
+              file.commit();
+            }
+            results[i] = result_of(drawn);
+            progress().finish(results[i].name);
+          },
+          jobs);
+      for (const HardResult& result : results) table.add(result);
+      for (const std::string& line : lines_of(results, scenes)) fmt::print("{}\n", line);
+      const auto figures = worth_of(results);
+      for (const Figure& figure : figures) worth.add(figure);
+      fmt::print("{}", in_columns(figures));
+      return p.origin();
+    });
+  };
+  return p.run(argc, argv, [&] {
+    return step_costs ? time_steps() : hard ? judge_hard_cases() : judge_cases();
+  });
 }

@@ -16,15 +16,14 @@ constexpr double always_allowed = 0.5;  // of advise() [s]
 
 constexpr double of_no_case = std::numeric_limits<double>::quiet_NaN();
 
-// The value that the part p of them does not exceed.
+}  // namespace
+
 double quantile(std::vector<double> values, double p) {
   if (values.empty()) return of_no_case;
   std::ranges::sort(values);
   const auto place = static_cast<std::size_t>(std::ceil(p * static_cast<double>(values.size())));
   return values[std::clamp<std::size_t>(place, 1, values.size()) - 1];
 }
-
-}  // namespace
 
 std::vector<Figure> worth_of(const std::vector<CaseResult>& results) {
   std::vector<Figure> figures;

@@ -12,7 +12,11 @@ struct Figure {
   std::string name, meaning;
   double value = 0;
   int cases = 0;
+  std::string of{};  // some of the cases; empty for all of them
 };
+
+// The value that the part p of them does not exceed; NaN without values.
+double quantile(std::vector<double> values, double p);
 
 // How often what is claimed holds, how wide error bars are, how near the choice is to the best in
 // hindsight, and what it costs.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "tests/independent/plain_model.hpp"
 
@@ -21,13 +22,15 @@ struct PlainState {
 // Differential Equations I, II.14). Verlet's method makes a long step H of n = 1, 2, ... short
 // ones. Its error is in even powers of 1/n; Aitken and Neville's scheme removes it up to order 24
 // (16 in long double). H is chosen so that the last two orders agree to `tolerance` of the motion's
-// size.
-template <class Real>
+// size. A model of other forces has the functions of PlainModel that are called here.
+template <class Real, class Model = PlainModel<Real>>
 class PlainMotion {
  public:
-  PlainMotion(const Scene& scene, Real tolerance) : model_(scene), tolerance_(tolerance) {
+  PlainMotion(const Scene& scene, Real tolerance) : PlainMotion(Model(scene), tolerance) {}
+  PlainMotion(Model model, Real tolerance) : model_(std::move(model)), tolerance_(tolerance) {
     now_ = {0, model_.positions(), model_.velocities()};
     stands_ = model_.place_massless(now_.x);
+    const Scene& scene = model_.scene();
     // Velocities of massless nodes follow from the others' and are left at zero.
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
       if (scene.nodes[i].mass > 0 || scene.nodes[i].pinned) continue;
@@ -35,7 +38,7 @@ class PlainMotion {
     }
   }
 
-  const PlainModel<Real>& model() const { return model_; }
+  const Model& model() const { return model_; }
   const PlainState<Real>& state() const { return now_; }
   // Moves where it is now [m] and how fast [m/s], along one coordinate of a node.
   void displace(std::size_t coordinate, Real by, Real faster) {
@@ -142,7 +145,7 @@ class PlainMotion {
   }
   static Real magnitude(Real x) { return x < 0 ? -x : x; }
 
-  PlainModel<Real> model_;
+  Model model_;
   Real tolerance_, step_ = 0, travelled_ = 0, speed_ = 0;
   PlainState<Real> now_;
   bool stands_ = false;
