@@ -97,6 +97,9 @@ bool find_truth(const Model& model, std::uint64_t seed, double until, Truth& tru
   return true;
 }
 
+// A run of so much work beside a hard motion is lost in rounding.
+constexpr std::int64_t most_forces = 1000000;
+
 // A run of the method seen at the times of the true motion.
 struct Seen {
   bool reached_end = false;
@@ -104,8 +107,9 @@ struct Seen {
 };
 Seen run(const Method& method, double value, const ReducedScene& model, const Truth& truth) {
   Seen seen;
-  const auto integrator =
-      make_integrator(method, model.system(), options_for(method, value, model));
+  Options options = options_for(method, value, model);
+  options.most_forces = most_forces;
+  const auto integrator = make_integrator(method, model.system(), options);
   State state = model.initial();
   const Deadline deadline(longest_of_all);
   const Observer observer{truth.times, [&](const State& s) { seen.path.push_back(s); }};

@@ -5,17 +5,27 @@
 #include <fmt/format.h>
 
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
 namespace {
 
+// Whether the motion itself is known to the accuracy, but not that it keeps its symmetry.
+bool is_by_symmetry(const Conditioning& found, double accuracy) {
+  constexpr double much = 0.5;
+  return found.leaves_by > found.effect && found.effect <= much * accuracy;
+}
+
 // The last look [s] until which one rounding changes the motion by less than the accuracy.
 double known_until(const Search& search, double accuracy) {
   double until = 0;
-  const std::vector<double>& differences = search.conditioning()->differences;
-  for (std::size_t i = 0; i < differences.size() && 2 * differences[i] <= accuracy; ++i)
-    until = search.stage().times()[i];
+  for (const auto* differences :
+       {&search.conditioning()->differences, &search.conditioning()->differences_left}) {
+    std::size_t i = 0;
+    while (i < differences->size() && (*differences)[i] <= accuracy) ++i;
+    const double own = i == 0 ? 0 : search.stage().times()[i - 1];
+    if (differences->empty()) continue;
+    until = until == 0 ? own : std::min(until, own);
+  }
   return until;
 }
 
@@ -24,11 +34,11 @@ std::string rounding_in_words(const Failure& failure, const Search& search, doub
   const double until = search.stage().until(), known = known_until(search, accuracy);
   const std::string instead =
       known > 0 ? fmt::format("; up to t = {:.3g} s it can be reached", known) : "";
-  if (found.leaves_by > found.effect) {
+  if (is_by_symmetry(found, accuracy)) {
     return fmt::format(
         "rounding moves the drawn nodes out of their line, plane or mirror symmetry, by {:.1e} of "
         "the motion{}",
-        found.leaves_by / 2, instead);
+        found.leaves_by, instead);
   }
   if (failure.horizon <= until) {
     return fmt::format(
@@ -42,19 +52,22 @@ std::string rounding_in_words(const Failure& failure, const Search& search, doub
         instead);
   }
   return fmt::format("one rounding of the start changes the motion by {:.1e} of it{}",
-                     found.effect / 2, instead);
+                     found.effect, instead);
 }
 
 }  // namespace
 
 std::optional<Divergence> parting(const Search& search) {
   const auto& conditioning = search.conditioning();
-  if (!conditioning || conditioning->differences.empty()) return {};
-  std::vector<double> times{0}, differences{machine_epsilon};
+  if (!conditioning) return {};
+  const std::vector<double>& seen = conditioning->leaves_by > conditioning->effect
+                                        ? conditioning->differences_left
+                                        : conditioning->differences;
+  if (seen.empty()) return {};
+  std::vector<double> times{0}, differences{search.stage().rounding()};
   const auto& looks = search.stage().times();
   times.insert(times.end(), looks.begin(), looks.end());
-  differences.insert(differences.end(), conditioning->differences.begin(),
-                     conditioning->differences.end());
+  differences.insert(differences.end(), seen.begin(), seen.end());
   return divergence(times, differences);
 }
 
@@ -65,6 +78,7 @@ Failure why_not(const Search& search, double accuracy, const std::string& stoppe
       best ? fmt::format("the smallest known error bound is {:.1e}", search.bound(*best)->error)
            : "no error is known";
   const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
+  const bool none_reached = std::ranges::none_of(search.trials(), &Trial::reached_end);
   const auto& conditioning = search.conditioning();
   const auto slack = std::ranges::find_if(search.trials(), [](const Trial& trial) {
     return trial.summary.outcome == Outcome::went_slack;
@@ -85,7 +99,7 @@ Failure why_not(const Search& search, double accuracy, const std::string& stoppe
   } else if (failure.is_rounding) {
     failure.why = rounding_in_words(failure, search, accuracy);
     if (best && !(failure.horizon <= search.stage().until())) failure.why += "; " + reached;
-  } else if (last && !last->reached_end() && !best) {
+  } else if (last && none_reached) {
     failure.why = fmt::format("no run reached the end; {} at {:g}: {}", last->method->name,
                               last->value, last->summary.message);
   } else {

@@ -27,7 +27,7 @@ double power_of_error(const Method& method);
 // as |q'| t / |q - q(0)|, which is right if errors add up. Each run with a known error corrects the
 // sensitivity of its method, and that of other methods by a part. Other methods have no forecast
 // before their first run. After it, their error is proportional to h^order or to rtol. The time is
-// the number of steps times the time of a step, measured in a few steps (see StepCost).
+// the number of steps times the time of a step, at first the time of its forces.
 class Forecast {
  public:
   // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero if nothing
@@ -72,7 +72,6 @@ class Forecast {
   std::map<const Method*, Seen> seen_;
   std::map<int, double> by_order_;          // error seen over error expected, of the last run
   std::map<const Method*, double> failed_;  // the smallest step that failed [s]
-  mutable std::map<const Method*, double> forces_a_step_;
 };
 
 // Whether the forecast of the method needs no run: an explicit method of fixed steps.

@@ -42,6 +42,7 @@ Trial& Search::run(const Method& method, double value, const Limits& limits, boo
                               : stage_.run(method, value, both));
   Trial& trial = trials_.back();
   if (!is_pushed) stage_.time_again(trial);
+  if (getenv("QDEBUG")) fprintf(stderr, "%.2f ms: run %s %g pushed %d out %d t %g forces %ld %s\n", 1e3*seconds_since(begin_), method.name.c_str(), value, is_pushed, (int)trial.summary.outcome, trial.summary.t_reached, (long)trial.summary.counts.force_evaluations, trial.summary.message.c_str());
   if (forecast_ && !trial.reached_end()) forecast_->learn_failure(trial);
   return trial;
 }
@@ -75,7 +76,7 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
   if (!trial.reached_end()) return {};
   if (stage_.of() == AccuracyOf::energy) {
     // The largest error between the looks and steps may be larger than at them.
-    constexpr double between = 1.4;
+    constexpr double between = 2;
     if (judges_.empty()) return {};
     return Bound{between * stage_.energy_error(trial) + 4 * machine_epsilon +
                  (conditioning_ ? conditioning_->effect : 0)};
@@ -122,7 +123,10 @@ const Trial* Search::fastest(double accuracy) const {
 
 const Trial* Search::find(double accuracy) {
   const Trial* known = fastest(accuracy);
-  if (!known && judge(accuracy)) known = fastest(accuracy);
+  if (!known) {
+    judge(accuracy);
+    known = fastest(accuracy);
+  }
   return known ? race(known, accuracy) : nullptr;
 }
 

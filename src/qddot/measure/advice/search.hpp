@@ -20,9 +20,11 @@ struct Bound {
 
 // The effect of rounding on a motion: of a start that is one rounding away.
 struct Conditioning {
-  double effect = 0;        // on the error that is asked for
-  double leaves_by = 0;     // the same of a push out of the symmetry of the reductions
-  std::vector<double> differences{};  // of the larger effect, at each look
+  double effect = 0;                  // on the error that is asked for
+  std::vector<double> differences{};  // at each look
+  // The same of a push out of the symmetry of the reductions.
+  double leaves_by = 0;
+  std::vector<double> differences_left{};
 };
 
 // Searches for the run that reaches an accuracy in the least time, and for a bound of its error.
@@ -86,6 +88,7 @@ class Search {
   bool judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left);
   std::vector<const Method*> with_error_control(bool implicitly, double accuracy) const;
   bool judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces);
+  std::int64_t forces_worth_implicit_steps(double accuracy);
   bool judge_by_forecast(double accuracy);
   bool judge_energy(double accuracy);
   void condition(const Trial& judge);
@@ -119,6 +122,7 @@ class Search {
   std::optional<Conditioning> conditioning_;
   std::deque<Trial> trials_;
   std::map<const Trial*, Judged> judges_;
+  const Trial* finest_ = nullptr;  // of the last runs with error control that gave no judge
   bool rests_ = false, is_judged_by_forecast_ = false;
 };
 

@@ -22,7 +22,7 @@ constexpr double drawn_together = 1.0 / 3, within = 2;
 // control judge a motion if they take about this: 20 ms.
 constexpr double little_work = 5e6;
 // The same for the last attempts, before an accuracy is refused.
-constexpr double much_work = 5e8;
+constexpr double much_work = 1e8;
 // Tolerances below this are lost in the rounding of a step.
 constexpr double least_tolerance = 1e-14;
 // A call of f costs about as much as so many unknowns.
@@ -39,7 +39,7 @@ std::int64_t Search::forces_within(double work) const {
 void Search::condition(const Trial& judge) {
   const Trial& twin = run(*judge.method, judge.value, {}, true);
   if (!twin.reached_end()) return;
-  conditioning_ = Conditioning{.effect = 2 * distance(judge, twin),
+  conditioning_ = Conditioning{.effect = distance(judge, twin),
                                .differences = stage_.distances(judge, twin)};
   condition_symmetry(judge);
 }
@@ -51,8 +51,8 @@ void Search::condition_symmetry(const Trial& judge) {
   if (left.empty()) return;
   if (!conditioning_) conditioning_.emplace();
   conditioning_->leaves_by =
-      2 * (stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back());
-  if (conditioning_->leaves_by > conditioning_->effect) conditioning_->differences = left;
+      stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back();
+  conditioning_->differences_left = left;
 }
 
 // Three runs of one method with error control, at tolerances that fall by tens. If they draw
@@ -63,14 +63,19 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy,
   std::vector<const Trial*> runs;
   for (double rtol = std::min(accuracy, largest_tolerance); rtol >= least_tolerance;
        rtol /= by_tens) {
-    if (seconds_left() <= 0 || forces_left <= 0) return false;
+    if (seconds_left() <= 0 || forces_left <= 0) break;
     const Trial& trial = run(method, rtol, {.forces = forces_left});
     forces_left -= trial.summary.counts.force_evaluations;
+    if (!trial.path.empty()) measure_by(trial);
+    if (stage_.rounding() > accuracy) {
+      // The motion is too small beside the positions' own rounding.
+      conditioning_ = Conditioning{.effect = stage_.rounding()};
+      return false;
+    }
     if (!trial.reached_end()) {
-      if (trial.summary.outcome == Outcome::over_budget || !runs.empty()) return false;
+      if (trial.summary.outcome == Outcome::over_budget || !runs.empty()) break;
       continue;
     }
-    measure_by(trial);
     if (!runs.empty() && distance_on_the_way(*runs.back(), trial) == 0)
       runs.pop_back();  // the same steps, which judge nothing
     runs.push_back(&trial);
@@ -83,12 +88,11 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy,
       judges_[&b] = {within * std::max(inner, distance(b, c)), &c, false};
       judges_[&c] = {within * inner, &b, true};
     }
-    const bool is_judge = judges_.contains(&c) && judges_[&c].error <= part_of_judge * accuracy;
-    // Runs that no longer draw together may have met rounding.
-    if (is_judge || !together) condition(c);
-    if (is_hopeless(accuracy)) return false;
-    if (is_judge) return true;
+    if (!judges_.contains(&c) || judges_[&c].error > part_of_judge * accuracy) continue;
+    condition(c);
+    return !is_hopeless(accuracy);
   }
+  finest_ = runs.size() < 3 ? nullptr : runs.back();
   return false;
 }
 
@@ -160,29 +164,45 @@ bool Search::judge_in_closed_form() {
   return true;
 }
 
+// The forces that an implicit run may evaluate if it is to take a part of the time of Verlet's
+// method. The time of a step is that of its first steps. Zero if these already take too long.
+std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
+  constexpr double fewest_steps = 2000, part = 0.3;
+  constexpr std::int64_t first_steps = 12;
+  const auto all = with_error_control(true, accuracy);
+  if (steps_of_verlet() < fewest_steps || all.empty()) return 0;
+  const Trial& first = run(*all.front(), accuracy, {.forces = first_steps});
+  const double a_force = first.seconds / static_cast<double>(first_steps);
+  const double worth =
+      part * steps_of_verlet() * seconds_of_force(stage_.model()) / a_force;
+  return worth > 2 * first_steps ? static_cast<std::int64_t>(worth) : 0;
+}
+
 bool Search::judge(double accuracy) {
   const System& system = stage_.model().system();
   if (w_start_ == 0) w_start_ = bound_of_w_;
   if (judge_in_closed_form()) return true;
   if (stage_.of() == AccuracyOf::energy) return judge_energy(accuracy);
-  if (system.has_massless())
-    return judge_by_error_control(accuracy, true, forces_within(much_work));
+  const auto lastly = [&](bool implicitly) {
+    if (judge_by_error_control(accuracy, implicitly, forces_within(much_work))) return true;
+    // The finest run tells whether rounding is the reason.
+    if (finest_ && !conditioning_) condition(*finest_);
+    return false;
+  };
+  if (system.has_massless()) return lastly(true);
   constexpr double forces_of_judge = 50;  // over those of Verlet's method at its limit
   const auto few = forces_within(little_work);
   if (forces_of_judge * steps_of_verlet() < static_cast<double>(few)) {
     if (judge_by_error_control(accuracy, false, few)) return true;
   } else {
     // An implicit run takes far fewer steps if the fast vibrations are hardly excited.
-    constexpr double share = 0.05;
-    if (judge_by_error_control(accuracy, true,
-                               static_cast<std::int64_t>(share * steps_of_verlet())))
-      return true;
+    const auto worth = forces_worth_implicit_steps(accuracy);
+    if (worth > 0 && judge_by_error_control(accuracy, true, worth)) return true;
   }
   if (is_hopeless(accuracy)) return false;
   is_judged_by_forecast_ = judge_by_forecast(accuracy);
   if (is_judged_by_forecast_) return true;
-  return !is_hopeless(accuracy) &&
-         judge_by_error_control(accuracy, false, forces_within(much_work));
+  return !is_hopeless(accuracy) && lastly(false);
 }
 
 // The energy of a run is its own judge, as the exact motion keeps it. A run with error control

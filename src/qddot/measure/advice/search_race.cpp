@@ -45,18 +45,22 @@ std::optional<Candidate> Search::untried(const Trial& answer, double accuracy) c
     if (system.has_massless() && !method.is(Trait::accepts_massless)) continue;
     if (stage_.of() == AccuracyOf::energy && method.is(Trait::implicit)) continue;
     if (std::ranges::find(trials_, &method, &Trial::method) != trials_.end()) continue;
-    double value = std::clamp(accuracy, 1e-13, 1e-2);
+    // Forces that the run evaluates at least: a step of order p takes about p of them, and an
+    // implicit step as long as twenty.
+    constexpr double of_implicit_step = 20;
+    double value = std::clamp(accuracy, 1e-13, 1e-2), forces = 0;
     if (method.knob == Knob::step_size) {
       // Steps that resolve the motion's own frequency of order 2, or the soft forces.
       const double own = method.asks(Need::split_forces)
                              ? resolved_frequency(method, system, stage_.model().initial().q)
                              : forecast_->own().at(2);
-      value = stage_.until() / std::max(8.0, std::ceil(stage_.until() * own));
-      const double steps = stage_.until() / value;
-      if (steps > 0.5 * stage_.until() / answer.value && answer.method->knob == Knob::step_size &&
-          method.is(Trait::implicit))
-        continue;
+      const double steps = std::max(8.0, std::ceil(stage_.until() * own));
+      value = stage_.until() / steps;
+      forces = steps * (method.is(Trait::implicit) ? of_implicit_step : 1);
+    } else if (method.is(Trait::bounds_steps)) {
+      forces = method.order * stage_.until() * forecast_->w_motion();
     }
+    if (forces > static_cast<double>(answer.summary.counts.force_evaluations)) continue;
     return Candidate{&method, value, 0, 0};
   }
   return {};

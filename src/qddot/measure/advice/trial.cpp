@@ -19,6 +19,8 @@ constexpr double short_run = 1e-3;
 constexpr int repeats_of_short = 3;
 // A part that moves by no more roundings of its positions than this has no motion to measure.
 constexpr double roundings_at_rest = 30;
+// The largest relative rounding error of a number.
+constexpr double one_rounding = machine_epsilon / 2;
 
 }  // namespace
 
@@ -57,7 +59,7 @@ Trial Stage::run(const Method& method, double value, const Limits& limits) const
 }
 
 Trial Stage::run_pushed(const Method& method, double value, const Limits& limits) const {
-  Trial trial = run_from(model_, displaced_start(model_, scales_, machine_epsilon), method, value,
+  Trial trial = run_from(model_, displaced_start(model_, scales_, one_rounding), method, value,
                          limits);
   trial.is_pushed = true;
   return trial;
@@ -78,6 +80,21 @@ void Stage::measure_by(const Trial& trial) {
   scales_ = {};
   extend(scales_, model_, model_.initial());
   for (const State& seen : trial.path) extend(scales_, model_, seen);
+  if (!rests()) return;
+  // Errors of what rests are relative to its size.
+  for (PartScale& part : scales_.parts) {
+    part.displacement = part.extent;
+    scales_.displacement = std::max(scales_.displacement, part.extent);
+  }
+}
+
+double Stage::rounding() const {
+  double largest = machine_epsilon;
+  for (const PartScale& part : scales_.parts) {
+    const double scale = scales_.displacement_of(part);
+    if (scale > 0) largest = std::max(largest, one_rounding * part.extent / scale);
+  }
+  return largest;
 }
 
 bool Stage::rests() const {
@@ -91,7 +108,9 @@ double Stage::energy_error(const Trial& trial) const {
 }
 
 double Stage::distance(const Trial& one, const Trial& other) const {
-  if (of_ == AccuracyOf::path) return std::ranges::max(distances(one, other));
+  // Between the looks the largest distance may be larger.
+  constexpr double between = 1.2;
+  if (of_ == AccuracyOf::path) return between * std::ranges::max(distances(one, other));
   return errors_between(model_, one.path.back(), other.path.back(), 0, scales_).position;
 }
 
@@ -120,7 +139,7 @@ std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial,
   for (PartScale& part : scales.parts) {
     if (part.extent == 0) part.displacement = scales_.displacement;
   }
-  const State start = displaced_start(drawn, scales, machine_epsilon);
+  const State start = displaced_start(drawn, scales, one_rounding);
   const Trial pushed = run_from(drawn, start, *trial.method, trial.value, limits);
   std::vector<double> all;
   if (!pushed.reached_end()) return all;

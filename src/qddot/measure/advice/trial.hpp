@@ -60,6 +60,8 @@ class Stage {
   double distance(const Trial& one, const Trial& other) const;
   // The distance at each look.
   std::vector<double> distances(const Trial& one, const Trial& other) const;
+  // One rounding of the start, as a distance.
+  double rounding() const;
   // Whether nothing moves by more than the rounding of its positions.
   bool rests() const;
 
