@@ -22,7 +22,7 @@
 #include <fmt/format.h>
 
 #include "experiments/advice/case_result.hpp"
-#include "experiments/advice/hard_result.hpp"
+#include "experiments/advice/hard_worth.hpp"
 #include "experiments/advice/step_costs.hpp"
 #include "experiments/advice/worth.hpp"
 #include "experiments/kit/program.hpp"
@@ -66,19 +66,16 @@ int main(int argc, char** argv) {
       return p.origin();
     });
   };
-  const auto judge_cases = [&] {
-    auto& table = p.table("cases.csv", case_columns());
-    auto& worth = p.table<Figure>("worth.csv", {{"figure", &Figure::name},
-                                                {"value", &Figure::value},
-                                                {"cases", &Figure::cases},
-                                                {"meaning", &Figure::meaning}});
+  // Judges the cases of these numbers, piece by piece, and tells the results.
+  const auto judge = [&]<class Result>(RowTable<Result>& table, const auto& result_of_number,
+                                       const auto& tell) {
     std::vector<std::uint64_t> numbers;
-    Shares shares{.chosen_by = {"--cases", "--first"}};
+    Shares shares{.chosen_by = {"--cases", "--first", "--hard"}};
     for (int i = 0; i < cases; ++i) {
       numbers.push_back(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i));
       shares.names.push_back(std::to_string(numbers.back()));
     }
-    std::vector<CaseResult> results;
+    std::vector<Result> results;
     return p.study(
         {{"code", build_info::source_hash}}, shares,
         [&](Study& study) {
@@ -89,57 +86,58 @@ int main(int argc, char** argv) {
               results.size(),
               [&](std::size_t i) {
                 const std::string name = fmt::format("case {}", numbers[i]);
-                results[i] = study.piece(name, [&] {
-                  return nlohmann::json(
-                      result_of(drawn_case(numbers[i]), reference_seconds, repeats));
-                });
+                results[i] =
+                    study.piece(name, [&] { return nlohmann::json(result_of_number(numbers[i])); });
                 progress().finish(name);
               },
               jobs);
         },
         [&] {
-          std::erase_if(results, [](const CaseResult& result) { return result.name.empty(); });
-          for (const CaseResult& result : results) table.add(result);
+          std::erase_if(results, [](const Result& result) { return result.name.empty(); });
+          for (const Result& result : results) table.add(result);
+          tell(results);
+          return p.origin();
+        });
+  };
+  const Columns<Figure> figure_columns = {{"of", &Figure::of},
+                                          {"figure", &Figure::name},
+                                          {"value", &Figure::value},
+                                          {"cases", &Figure::cases},
+                                          {"meaning", &Figure::meaning}};
+  const auto judge_cases = [&] {
+    auto& worth = p.table<Figure>("worth.csv", figure_columns);
+    return judge(
+        p.table("cases.csv", case_columns()),
+        [&](std::uint64_t number) {
+          return result_of(drawn_case(number), reference_seconds, repeats);
+        },
+        [&](const std::vector<CaseResult>& results) {
           fmt::print("{:<24} {:>8} {:>6}  {}\n", "figure", "value", "cases", "of what");
           for (const Figure& figure : worth_of(results)) {
             worth.add(figure);
             fmt::print("{:<24} {:>8.3g} {:>6}  {}\n", figure.name, figure.value, figure.cases,
                        figure.meaning);
           }
-          return p.origin();
         });
   };
   const auto judge_hard_cases = [&] {
-    auto& table = p.table("hard.csv", hard_columns());
-    auto& worth = p.table<Figure>("hard_worth.csv", {{"of", &Figure::of},
-                                                     {"figure", &Figure::name},
-                                                     {"value", &Figure::value},
-                                                     {"cases", &Figure::cases},
-                                                     {"meaning", &Figure::meaning}});
-    return p.write([&] {
-      std::vector<HardResult> results(static_cast<std::size_t>(*cases));
-      progress().begin(results.size());
-      side_by_side(
-          results.size(),
-          [&](std::size_t i) {
-            const std::uint64_t number = static_cast<std::uint64_t>(first) + i;
-            const HardCase drawn = hard_case(number);
-            if (scenes && drawn.pairs.empty()) {
-              WholeFile file(fmt::format("{}/case_{}.toml", p.folder(), number));
-              file.write(signed_text(to_toml(drawn.scene)));
-              file.commit();
-            }
-            results[i] = result_of(drawn);
-            progress().finish(results[i].name);
-          },
-          jobs);
-      for (const HardResult& result : results) table.add(result);
-      for (const std::string& line : lines_of(results, scenes)) fmt::print("{}\n", line);
-      const auto figures = worth_of(results);
-      for (const Figure& figure : figures) worth.add(figure);
-      fmt::print("{}", in_columns(figures));
-      return p.origin();
-    });
+    auto& worth = p.table<Figure>("hard_worth.csv", figure_columns);
+    return judge(
+        p.table("hard.csv", hard_columns()),
+        [&](std::uint64_t number) {
+          const HardCase hard_one = hard_case(number);
+          if (scenes && hard_one.pairs.empty()) {
+            WholeFile file(fmt::format("{}/case_{}.toml", p.folder(), number));
+            file.write(signed_text(to_toml(hard_one.scene)));
+            file.commit();
+          }
+          return result_of(hard_one);
+        },
+        [&](const std::vector<HardResult>& results) {
+          const auto figures = worth_of(results);
+          for (const Figure& figure : figures) worth.add(figure);
+          fmt::print("{}\n{}", fmt::join(lines_of(results, scenes), "\n"), in_columns(figures));
+        });
   };
   return p.run(argc, argv, [&] {
     return step_costs ? time_steps() : hard ? judge_hard_cases() : judge_cases();

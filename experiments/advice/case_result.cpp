@@ -1,6 +1,7 @@
 #include "experiments/advice/case_result.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/advise.hpp"
@@ -89,6 +90,15 @@ Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
 // Fraction of the accuracy that the reference may be off by.
 constexpr double good_reference = 0.3;
 
+// The error of positions at the end; infinite if the run does not reach it.
+double error_of_run(const Method& method, double value, const ReducedScene& model,
+                    const Reference& reference) {
+  const Point point = measure_point(method, value, model, reference.end.t, reference,
+                                    {.seconds = 60, .repeats = 1});
+  return point.outcome == Outcome::reached_end ? point.errors.position
+                                               : std::numeric_limits<double>::infinity();
+}
+
 void measure_worth(CaseResult& result, const ReducedScene& model, const Reference& reference,
                    const Answer& answer, int repeats) {
   result.certified = reference.certified.position;
@@ -132,6 +142,7 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
   result.advice_seconds = advices.seconds;
   if (const auto& take = advices.for_each.front().take) {
     result.advised = take->method->name;
+    result.advised_value = take->value;
     result.advised_error = take->error;
     result.advised_seconds = take->seconds;
   }
@@ -140,8 +151,11 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
     if (reference.certified.position > good_reference * drawn.accuracy) {
       result.left_out = "the reference is not certified to three tenths of the accuracy";
       result.certified = reference.certified.position;
-    } else if (answer.method) {
-      measure_worth(result, model, reference, answer, repeats);
+    } else {
+      if (!result.advised.empty())
+        result.advised_true_error =
+            error_of_run(*find_method(result.advised), result.advised_value, model, reference);
+      if (answer.method) measure_worth(result, model, reference, answer, repeats);
     }
   } catch (const NoReference& error) {
     result.left_out = error.what();
@@ -173,7 +187,9 @@ const Columns<CaseResult>& case_columns() {
       {"run_time_s", &CaseResult::run_seconds},
       {"total_time_s", &CaseResult::total_seconds},
       {"runs", &CaseResult::runs},
+      {"advised_value", &CaseResult::advised_value},
       {"advised_error", &CaseResult::advised_error},
+      {"advised_true_error", &CaseResult::advised_true_error},
       {"advised_time_s", &CaseResult::advised_seconds},
       {"advice_time_s", &CaseResult::advice_seconds}};
   return columns;

@@ -25,10 +25,13 @@ struct CaseResult {
   double total_seconds = 0;  // of solve(), everything included
   double runs = 0;
   std::string advised{};  // by advise()
-  double advised_error = 0, advised_seconds = 0, advice_seconds = 0;
+  double advised_value = 0;
+  double advised_error = 0, advised_seconds = 0, advice_seconds = 0;  // as advise() expects them
+  double advised_true_error = 0;                                      // measured
 
   // Whether an error was measured, and told from zero.
   bool is_judged() const { return left_out.empty() && is_claimed; }
+  bool is_advised() const { return left_out.empty() && !advised.empty(); }
   bool has_error() const { return is_judged() && certified <= 0.1 * error; }
   bool has_best() const { return left_out.empty() && !best_method.empty(); }
 };
@@ -36,7 +39,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CaseResult, name, kind, unknowns, springs, un
                                    left_out, is_claimed, method, kind_of_estimate, why, value,
                                    error_estimate, error, certified, best_method, best_value,
                                    best_seconds, run_seconds, total_seconds, runs, advised,
-                                   advised_error, advised_seconds, advice_seconds)
+                                   advised_value, advised_error, advised_seconds, advice_seconds,
+                                   advised_true_error)
 
 // Asks for the motion of the case and for advice, and then measures both. The error is that against
 // a reference of about `reference_seconds`. The time is compared with the fastest run of all

@@ -67,6 +67,9 @@ std::vector<Figure> worth_of(const std::vector<CaseResult>& results) {
         [](const CaseResult& r) { return r.error - r.certified <= r.accuracy; });
   share("within_bar", "answers with an error of at most the error bar", judged,
         [](const CaseResult& r) { return r.error - r.certified <= r.error_estimate; });
+  share("advised_within_accuracy", "advised runs with an error of at most the accuracy",
+        &CaseResult::is_advised,
+        [](const CaseResult& r) { return r.advised_true_error - r.certified <= r.accuracy; });
   spread("bar_over_error", "error bar over error", has_error,
          [](const CaseResult& r) { return r.error_estimate / r.error; });
   spread("run_over_best", "time of the chosen run over that of the best in hindsight", compared,

@@ -1,11 +1,14 @@
 // Does the certified error of a reference bound its true error?
 //
 //   fuzz_references --count 200 --seed 1
+//   fuzz_references --count 400 --seed 30000000 --hard
 //
 // The reference of each random scene is compared with the motion of the scene as drawn. That motion
 // is computed in quadruple precision by an independent model (tests/independent). The program
 // prints the scenes whose error is larger than certified, the fraction of scenes whose error is
 // not, and quantiles of the certified over the true error. Status 1 if less than 99 % are covered.
+// With --hard the motions are the hard cases of the study `advice`, own forces among them. These
+// are longer, so that extended precision must do for their truth.
 //
 // A motion that was reduced by symmetry is the drawn one only while the rounding of the start,
 // which breaks the symmetry, does not grow. If this rounding is known to move the end by more than
@@ -18,8 +21,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "experiments/advice/hard_case.hpp"
+#include "experiments/kit/plain_motion.hpp"
 #include "qddot/measure/reference/reference.hpp"
-#include "tests/independent/plain_motion.hpp"
 #include "tests/independent/random_scene.hpp"
 
 namespace qddot {
@@ -27,8 +31,9 @@ namespace {
 
 // Far below what a double resolves, and far above what quadruple precision does.
 constexpr double plain_tolerance = 1e-24;
+constexpr long double hard_tolerance = 1e-17L;
 // The truth is given up if a kink of f or a spring that turns over holds the steps down.
-constexpr int most_plain_steps = 1000;
+constexpr int most_plain_steps = 1000, most_hard_steps = 20000;
 
 struct Tally {
   int made = 0, out_of_symmetry = 0, chaotic = 0, without_reference = 0, without_truth = 0,
@@ -36,18 +41,21 @@ struct Tally {
   std::vector<double> position, velocity, energy;  // certified over true errors
 };
 
-double magnitude(Quadruple x) { return std::abs(static_cast<double>(x)); }
+template <class Real>
+double magnitude(Real x) {
+  return std::abs(static_cast<double>(x));
+}
 
 // The reference's true errors in the units of what it certifies, over the nodes with mass.
+template <class Real, class Model>
 Errors true_errors(const ReducedScene& scene, const Scene& drawn, const Reference& reference,
-                   const PlainMotion<Quadruple>& motion, Quadruple energy) {
+                   const PlainMotion<Real, Model>& motion, Real energy) {
   const auto nodes = scene.expand(reference.end);
   Errors errors = no_error;
-  const auto distance = [](const Eigen::Vector3d& a, const std::vector<Quadruple>& b,
-                           std::size_t i) {
+  const auto distance = [](const Eigen::Vector3d& a, const std::vector<Real>& b, std::size_t i) {
     double squares = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double d = magnitude(Quadruple(a[static_cast<Eigen::Index>(c)]) - b[3 * i + c]);
+      const double d = magnitude(Real(a[static_cast<Eigen::Index>(c)]) - b[3 * i + c]);
       squares += d * d;
     }
     return std::sqrt(squares);
@@ -63,17 +71,18 @@ Errors true_errors(const ReducedScene& scene, const Scene& drawn, const Referenc
   }
   // Errors of E(0) as the reference gives it, and of E as it is computed from the end.
   for (const double computed : {reference.energy, scene.energy(reference.end)}) {
-    const double error = magnitude(Quadruple(computed) - energy);
+    const double error = magnitude(Real(computed) - energy);
     if (reference.scales.kinetic > 0)
       errors.energy = std::max(errors.energy, error / reference.scales.kinetic);
   }
   return errors;
 }
 
-void try_one(std::uint64_t seed, double seconds, bool shows_all, Tally& tally) {
-  const RandomScene random = random_scene(seed);
-  const Scene& drawn = random.scene;
-  const ReducedScene scene(drawn);
+// The motion whose reference is tried, the model of it, and its truth, not yet advanced.
+template <class Motion>
+void try_one(std::uint64_t seed, const std::string& kind, const Scene& drawn, bool is_scene,
+             const ReducedScene& scene, Motion motion, int most_steps, double seconds,
+             bool shows_all, Tally& tally) {
   if (!scene.massless_nodes().empty() || scene.system().size() == 0) {
     ++tally.skipped;
     return;
@@ -81,16 +90,15 @@ void try_one(std::uint64_t seed, double seconds, bool shows_all, Tally& tally) {
   const double until = *drawn.until;
   std::optional<Reference> made;
   try {
-    made = make_reference(scene, until, seconds, &drawn);
+    made = make_reference(scene, until, seconds, is_scene ? &drawn : nullptr);
   } catch (const NoReference&) {
-    fmt::print("seed {:<5} {:<16} has no reference\n", seed, random.kind);
+    fmt::print("seed {:<5} {:<16} has no reference\n", seed, kind);
     ++tally.without_reference;
     return;
   }
   const Reference& reference = *made;
-  PlainMotion<Quadruple> motion(drawn, plain_tolerance);
-  const Quadruple energy = motion.model().energy(motion.state().x, motion.state().v);
-  if (!motion.advance(until, most_plain_steps) || motion.forced_steps() > 0) {
+  const auto energy = motion.model().energy(motion.state().x, motion.state().v);
+  if (!motion.advance(until, most_steps) || motion.forced_steps() > 0) {
     ++tally.without_truth;
     return;
   }
@@ -114,7 +122,7 @@ void try_one(std::uint64_t seed, double seconds, bool shows_all, Tally& tally) {
     if (bound >= error && !shows_all) return;
     fmt::print(
         "seed {:<5} {:<16} {:<9} certified {:.2e}  error {:.2e}  ratio {:<8.3g} {:.2g} s, {}{}\n",
-        seed, random.kind, what, bound, error, bound / error, reference.seconds, reference.made_by,
+        seed, kind, what, bound, error, bound / error, reference.seconds, reference.made_by,
         is_out ? " (out of symmetry)" : "");
   };
   compare("position", certified.position, errors.position, tally.position);
@@ -138,9 +146,30 @@ double tell(const char* what, std::vector<double> ratios) {
   return covered;
 }
 
-int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, bool shows_all) {
+void try_random(std::uint64_t seed, double seconds, bool shows_all, Tally& tally) {
+  const RandomScene random = random_scene(seed);
+  try_one(seed, random.kind, random.scene, true, ReducedScene(random.scene),
+          PlainMotion<Quadruple>(random.scene, plain_tolerance), most_plain_steps, seconds,
+          shows_all, tally);
+}
+
+void try_hard(std::uint64_t number, double seconds, bool shows_all, Tally& tally) {
+  using namespace judged_advice;
+  const HardCase hard = hard_case(number);
+  const auto try_model = [&](const auto& model) {
+    try_one(number, hard.kind, hard.scene, hard.pairs.empty(), hard.model(),
+            PlainMotion(model, hard_tolerance), most_hard_steps, seconds, shows_all, tally);
+  };
+  if (hard.pairs.empty())
+    try_model(PlainModel<long double>(hard.scene));
+  else
+    try_model(PlainPairs<long double>(hard.scene, hard.pairs));
+}
+
+int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, bool are_hard, bool shows_all) {
   Tally tally;
-  for (std::uint64_t i = 0; i < count; ++i) try_one(seed + i, seconds, shows_all, tally);
+  for (std::uint64_t i = 0; i < count; ++i)
+    (are_hard ? try_hard : try_random)(seed + i, seconds, shows_all, tally);
   fmt::print(
       "{} scenes: {} references held against the truth, {} of them where a rounding out of the "
       "symmetry does more, {} beyond their horizon and left out; {} without a reference, {} "
@@ -159,12 +188,13 @@ int main(int argc, char** argv) {
   CLI::App app("Holds references against the true motion.", "fuzz_references");
   std::uint64_t count = 200, seed = 1;
   double seconds = 2;
-  bool shows_all = false;
+  bool are_hard = false, shows_all = false;
   app.add_option("--count", count, "number of scenes")->capture_default_str();
   app.add_option("--seed", seed, "the seed of the first scene; each later one has the next number")
       ->capture_default_str();
   app.add_option("--seconds", seconds, "seconds that a reference may take")->capture_default_str();
+  app.add_flag("--hard", are_hard, "hard cases of the study `advice`, by their numbers");
   app.add_flag("--all", shows_all, "print each scene, not only those not covered");
   CLI11_PARSE(app, argc, argv);
-  return qddot::fuzz(count, seed, seconds, shows_all);
+  return qddot::fuzz(count, seed, seconds, are_hard, shows_all);
 }

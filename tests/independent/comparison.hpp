@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "qddot/scene/reduce/reduced_scene.hpp"
-#include "tests/independent/plain_motion.hpp"
+#include "experiments/kit/plain_motion.hpp"
 
 namespace qddot {
 inline namespace tests {

@@ -6,7 +6,7 @@
 #include "qddot/scene/scene.hpp"
 
 namespace qddot {
-inline namespace tests {
+inline namespace kit {
 
 // A real of quadruple precision (113 bits); the language has no root of it.
 using Quadruple = __float128;
@@ -212,5 +212,5 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
   return false;
 }
 
-}  // namespace tests
+}  // namespace kit
 }  // namespace qddot

@@ -6,10 +6,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "tests/independent/plain_model.hpp"
+#include "experiments/kit/plain_model.hpp"
 
 namespace qddot {
-inline namespace tests {
+inline namespace kit {
 
 // Positions [m] and velocities [m/s] of all nodes at the time t [s].
 template <class Real>
@@ -48,6 +48,8 @@ class PlainMotion {
   // The number of the shortest steps, taken at kinks of f (springs of length zero). The error of
   // each is of that step's size.
   int forced_steps() const { return forced_; }
+  // The number of steps that were tried.
+  int tried_steps() const { return tried_; }
 
   // Steps to `until` [s]; false where a massless node finds no place or `most_steps` are not
   // enough.
@@ -61,6 +63,7 @@ class PlainMotion {
       if (!(left > 0)) return true;
       const bool is_last = step_ >= left;
       const Real h = is_last ? left : step_;
+      ++tried_;
       const std::optional<Real> error = extrapolate(h);
       const bool is_forced = h <= shortest;
       if (!error && is_forced) return false;
@@ -149,9 +152,12 @@ class PlainMotion {
   Real tolerance_, step_ = 0, travelled_ = 0, speed_ = 0;
   PlainState<Real> now_;
   bool stands_ = false;
-  int forced_ = 0;
+  int forced_ = 0, tried_ = 0;
   Vector x_[levels], v_[levels];
 };
 
-}  // namespace tests
+template <template <class> class Model, class Real>
+PlainMotion(Model<Real>, Real) -> PlainMotion<Real, Model<Real>>;
+
+}  // namespace kit
 }  // namespace qddot
