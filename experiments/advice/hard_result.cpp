@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 
 #include "experiments/advice/true_motion.hpp"
@@ -106,8 +107,13 @@ HardResult result_of(const HardCase& hard) {
                     .unknowns = static_cast<double>(model.system().size()),
                     .until = hard.until,
                     .accuracy = hard.accuracy};
-  const Answer answer = solve(
-      model, hard.until, {.accuracy = hard.accuracy, .of = hard.of, .seconds = longest_answer});
+  Answer answer;
+  try {
+    answer = solve(model, hard.until,
+                   {.accuracy = hard.accuracy, .of = hard.of, .seconds = longest_answer});
+  } catch (const std::exception& error) {
+    answer.why = error.what();
+  }
   result.is_claimed = answer.is_reached;
   result.method = answer.method ? answer.method->name : "";
   result.kind_of_estimate = name(answer.error_estimate_kind);
@@ -140,14 +146,17 @@ HardResult result_of(const HardCase& hard) {
           error_of(run(*answer.method, answer.value, model, truth), model, truth, scales, hard.of);
     }
   }
-  const Advices advices = advise(model, hard.until, {hard.accuracy}, hard.of);
-  result.advice_seconds = advices.seconds;
-  if (const auto& take = advices.for_each.front().take) {
+  try {
+    const Advices advices = advise(model, hard.until, {hard.accuracy}, hard.of);
+    result.advice_seconds = advices.seconds;
+    const auto& take = advices.for_each.front().take;
+    if (!take) return result;
     result.advised = take->method->name;
     result.advised_value = take->value;
     if (model.system().size() > 0)
       result.advised_error =
           error_of(run(*take->method, take->value, model, truth), model, truth, scales, hard.of);
+  } catch (const std::exception&) {  // no advice; an answer's exception is told
   }
   return result;
 }
