@@ -5,6 +5,8 @@
 //   advice --out results/advice
 //   advice --cases 40 --first 4000000 --out results/other
 //
+//   advice --hard --first 20000000 --out results/hard
+//   advice --hard --cases 1 --first 20000007 --scenes --out results/one
 //   advice --step-costs --out results/step_costs
 //
 //  1. Cases are drawn by their number (see drawn_case.hpp). The search was tuned on numbers below
@@ -14,6 +16,11 @@
 //     left out.
 //  3. worth.csv says how often claims and error bars hold and how wide the bars are. It also says
 //     how near the choice is to the best run, and how long everything takes.
+//
+// The option --hard asks for hard motions instead (see hard_case.hpp), and judges positions, path
+// and energy against their true motion (see true_motion.hpp), advised runs as well. hard.csv has
+// the answers, hard_worth.csv says for each kind how often they hold and how often one is refused
+// that rounding allows. Rules may be chosen on numbers below 20000000.
 //
 // The option --step-costs replaces all this: it writes step_costs.csv, the times of a step of each
 // method, which forecasts begin with.

@@ -13,7 +13,7 @@ namespace qddot::judged_advice {
 // A question on a small motion that is hard to answer: of a scene, or of bodies with own forces.
 struct HardCase {
   std::uint64_t number = 0;
-  std::string kind;
+  std::string kind{};
   Scene scene{};                 // without springs if there are own forces
   std::vector<OwnPair> pairs{};  // the own forces
   bool gives_stiffness = true;   // whether own forces have a K

@@ -73,7 +73,7 @@ void before_horizon(HardCase& c, Draws& draw) {
     const auto integrator = make_integrator(*find_method("dprkn12"), model.system(),
                                             options_for(*find_method("dprkn12"), 1e-12, model));
     State state = start;
-    integrator->advance(state, longest, {times, [&](const State& s) { path.push_back(s.q); }});
+    integrator->advance(state, times.back(), {times, [&](const State& s) { path.push_back(s.q); }});
     return path;
   };
   State moved = model.initial();

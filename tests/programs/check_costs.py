@@ -362,3 +362,16 @@ class Advice(Programs):
         self.done("advice --cases 3 --first 11000000 --repeats 1 --reference-seconds 0.3 --out out")
         self.assertEqual(len(table("out/cases.csv")), 3)
         self.assertGreaterEqual(len(table("out/worth.csv")), 9)
+
+    def test_the_study_judges_hard_motions_and_writes_their_scenes(self):
+        # The first of them has own forces, and no scene.
+        ended = self.done("advice --hard --cases 2 --first 20000000 --scenes --out out")
+        rows = table("out/hard.csv")
+        self.assertEqual([row["of"] for row in rows], ["energy", "positions"])
+        self.holds(ended.stdout, rows[0]["kind"], rows[1]["kind"], "within_bar")
+        scenes = [name for name in os.listdir("out") if name.endswith(".toml")]
+        self.assertEqual(scenes, ["case_20000001.toml"])
+        said = f"simulate --scene out/{scenes[0]} --method dprkn12 --rtol 1e-6"
+        self.done(f"{said} --until {rows[1]['until'] / 2!r}")
+        of = {row["of"] for row in table("out/hard_worth.csv", "of,figure,value,cases,meaning")}
+        self.assertLessEqual({"all", "positions", "energy"}, of)
