@@ -129,7 +129,7 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
     result.left_out = "nothing is left to be integrated";
     return result;
   }
-  const Answer answer = solve(model, drawn.until, {.accuracy = drawn.accuracy});
+  const Answer answer = solve(model, drawn.until, {.accuracy = drawn.accuracy}, &drawn.scene);
   result.is_claimed = answer.is_reached;
   result.method = answer.method ? answer.method->name : "";
   result.kind_of_estimate = name(answer.error_estimate_kind);

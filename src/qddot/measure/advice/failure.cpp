@@ -40,7 +40,7 @@ std::string rounding_in_words(const Failure& failure, const Search& search, doub
         "the motion{}",
         found.leaves_by, instead);
   }
-  if (failure.horizon <= until) {
+  if (failure.horizon <= until && failure.lyapunov > 0) {
     return fmt::format(
         "the motion is chaotic: from t = {:.3g} s on nobody knows its positions (errors grow by a "
         "factor of e in {}){}; ask for an earlier end, or for --accuracy-of energy",

@@ -91,15 +91,18 @@ double Forecast::largest_step(const Method& method) const {
   return h;
 }
 
+double Forecast::step_by_frequency(const Method& method, double error) const {
+  const double w = own_.at(method.order);
+  if (!(w > 0 && sensitivity_ > 0)) return stage_.until();
+  return largest_h_omega(method, error / sensitivity_) / w;
+}
+
 std::optional<Candidate> Forecast::candidate(const Method& method, double error) const {
   const double until = stage_.until();
   const auto seen = seen_.find(&method);
   double value = 0;
   if (is_forecast_by_frequency(method)) {
-    const double w = own_.at(method.order);
-    value = w > 0 && sensitivity_ > 0
-                ? largest_h_omega(method, error / (scale(method) * sensitivity_)) / w
-                : until;
+    value = step_by_frequency(method, error / scale(method));
   } else {
     if (seen == seen_.end()) return {};
     const double finer = std::pow(seen->second.error / error, 1 / power_of_error(method));

@@ -41,6 +41,9 @@ class Forecast {
   double doubt(const Method& one, const Method& other) const;
   // The run of the method that is expected to have the error; empty if there is none.
   std::optional<Candidate> candidate(const Method& method, double error) const;
+  // The step size [s] at which the error of a method of fixed steps is expected by its frequency
+  // error alone, as if it resolved all vibrations.
+  double step_by_frequency(const Method& method, double error) const;
   // Those runs of all methods that fit the system, fastest first.
   std::vector<Candidate> candidates(double error) const;
 

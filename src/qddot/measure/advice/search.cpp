@@ -76,7 +76,7 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
   if (!trial.reached_end()) return {};
   if (stage_.of() == AccuracyOf::energy) {
     // The largest error between the looks and steps may be larger than at them.
-    constexpr double between = 2;
+    const double between = trial.method->is(Trait::interpolates) ? 4 : 2;
     if (judges_.empty()) return {};
     return Bound{between * stage_.energy_error(trial) + 4 * machine_epsilon +
                  (conditioning_ ? conditioning_->effect : 0)};
@@ -126,6 +126,11 @@ const Trial* Search::find(double accuracy) {
   if (!known) {
     judge(accuracy);
     known = fastest(accuracy);
+    // No claim without a look at what rounding does.
+    if (known && !conditioning_ && stage_.of() != AccuracyOf::energy) {
+      condition(*known);
+      known = conditioning_ ? fastest(accuracy) : nullptr;
+    }
   }
   return known ? race(known, accuracy) : nullptr;
 }

@@ -100,6 +100,7 @@ class Search {
 
   const Trial* survey(std::int64_t most_forces);
   void begin_forecast(const std::vector<State>& path, double w);
+  bool may_forecast(const Trial& trial);
   void learn();
   std::optional<Candidate> promised(double error, double seconds) const;
   std::optional<Candidate> untried(const Trial& answer, double accuracy) const;

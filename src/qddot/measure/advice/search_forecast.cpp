@@ -20,6 +20,8 @@ constexpr double aim = 0.4;
 constexpr double finer = 2.4;
 // The bound of an error over its distance to a check.
 constexpr double margin = 1.5;
+// Two runs at this distance or more have nothing in common.
+constexpr double lost = 0.1;
 // A run that gains this energy, over the kinetic one, has at least a tenth of that as its error.
 constexpr double witness = 0.1;
 
@@ -77,6 +79,17 @@ void Search::begin_forecast(const std::vector<State>& path, double w) {
   forecast_.emplace(stage_, own_frequencies(model, path, w, bursts), w, seconds_of_force(model));
 }
 
+// Whether there is a forecast; begins one along the trial if its motion vibrates.
+bool Search::may_forecast(const Trial& trial) {
+  if (forecast_) return true;
+  double w = bound_of_w_;
+  for (const State& state : trial.path)
+    w = std::max(w, frequency_bound(stage_.model().system(), state.q));
+  if (!(w > 0) || !std::isfinite(w)) return false;
+  begin_forecast(trial.path, w);
+  return true;
+}
+
 // Corrects the forecast by the distances of runs to the best judge, else to the run that is
 // expected to be the most accurate.
 void Search::learn() {
@@ -117,7 +130,7 @@ bool Search::judge_by_forecast(double accuracy) {
   const double steps = stage_.until() / first->value;
   const double growth = growth_of_frequency(stage_.model(), first->path, bound_of_w_);
   begin_forecast(first->path, std::min(w_start_ * growth, 2.04 * steps / stage_.until()));
-  constexpr int most_rounds = 6;
+  constexpr int most_rounds = 4;
   const Trial* tried = first;
   for (int round = 0; round < most_rounds && seconds_left() > 0; ++round) {
     // Explicit runs of fixed steps alone: their errors fall by their order from the first run on.
@@ -162,7 +175,10 @@ bool Search::judge_by_forecast(double accuracy) {
       condition_symmetry(*first);
       return is_known(*tried, accuracy);
     }
-    // Runs that should be near each other and are not: rounding may be the reason.
+    // Runs that should be near each other and are not: rounding may be the reason. The first run
+    // tells cheaply whether it leaves nothing known.
+    if (!conditioning_ && between > lost) condition(*first);
+    if (conditioning_ && conditioning_->effect < lost) conditioning_.reset();
     if (round > 0 && !conditioning_) condition(*tried);
     if (is_hopeless(accuracy)) return false;
   }

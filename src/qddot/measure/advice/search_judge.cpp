@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "qddot/analysis/largest_frequency.hpp"
@@ -17,7 +18,7 @@ namespace {
 constexpr double part_of_judge = 0.2;
 // Runs draw together if the finer two of three differ by this part of what the outer two do. In the
 // study's table, the error of the coarsest was then within twice its distance in 1126 of 1127.
-constexpr double drawn_together = 1.0 / 3, within = 2;
+constexpr double drawn_together = 1.0 / 3;
 // Work [evaluations of f, times unknowns and what a call costs beside them]. Runs with error
 // control judge a motion if they take about this: 20 ms.
 constexpr double little_work = 5e6;
@@ -41,6 +42,7 @@ void Search::condition(const Trial& judge) {
   if (!twin.reached_end()) return;
   conditioning_ = Conditioning{.effect = distance(judge, twin),
                                .differences = stage_.distances(judge, twin)};
+  if (getenv("QDEBUG")) fprintf(stderr, "twin %g\n", conditioning_->effect);
   condition_symmetry(judge);
 }
 
@@ -60,6 +62,8 @@ void Search::condition_symmetry(const Trial& judge) {
 bool Search::judge_by_tolerance(const Method& method, double accuracy,
                                 std::int64_t& forces_left) {
   constexpr double by_tens = 10, largest_tolerance = 1e-2;
+  // Errors of implicit methods follow their tolerances less closely.
+  const double within = method.is(Trait::implicit) ? 4 : 2;
   std::vector<const Trial*> runs;
   for (double rtol = std::min(accuracy, largest_tolerance); rtol >= least_tolerance;
        rtol /= by_tens) {
@@ -83,7 +87,8 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy,
     const Trial &c = *runs.back(), &b = *runs[runs.size() - 2], &a = *runs[runs.size() - 3];
     const double outer = distance_on_the_way(a, c), inner = distance_on_the_way(b, c);
     const bool together = inner <= drawn_together * outer;
-    if (together || within * std::max(inner, outer) <= part_of_judge * accuracy) {
+    if (getenv("QDEBUG")) fprintf(stderr, "outer %g inner %g end %g %g\n", outer, inner, distance(a,c), distance(b,c));
+    if (together || within * std::max(inner, outer) <= accuracy / 2) {
       judges_[&a] = {within * std::max(distance(a, c), distance(a, b)), &c, false};
       judges_[&b] = {within * std::max(inner, distance(b, c)), &c, false};
       judges_[&c] = {within * inner, &b, true};
@@ -152,7 +157,7 @@ bool Search::judge_in_closed_form() {
   const Scales& scales = stage_.scales();
   const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
   const double phase = bound_of_w_ * stage_.until() * (slow > 0 ? std::max(1.0, bound_of_w_ / slow) : 1);
-  judges_[&trial] = {4 * machine_epsilon * (1 + phase), nullptr, false};
+  judges_[&trial] = {4 * machine_epsilon * (rests_ ? 1 : 1 + phase), nullptr, false};
   condition(trial);
   if (stage_.is_reduced_by_symmetry()) {
     // Out of the line the motion is not linear.
@@ -184,10 +189,11 @@ bool Search::judge(double accuracy) {
   if (judge_in_closed_form()) return true;
   if (stage_.of() == AccuracyOf::energy) return judge_energy(accuracy);
   const auto lastly = [&](bool implicitly) {
-    if (judge_by_error_control(accuracy, implicitly, forces_within(much_work))) return true;
+    const bool is_found =
+        judge_by_error_control(accuracy, implicitly, forces_within(much_work));
     // The finest run tells whether rounding is the reason.
-    if (finest_ && !conditioning_) condition(*finest_);
-    return false;
+    if (!is_found && finest_ && !conditioning_) condition(*finest_);
+    return is_found;
   };
   if (system.has_massless()) return lastly(true);
   constexpr double forces_of_judge = 50;  // over those of Verlet's method at its limit
@@ -202,27 +208,43 @@ bool Search::judge(double accuracy) {
   if (is_hopeless(accuracy)) return false;
   is_judged_by_forecast_ = judge_by_forecast(accuracy);
   if (is_judged_by_forecast_) return true;
-  return !is_hopeless(accuracy) && lastly(false);
+  // A run near the stability limit may part from its twin where the motion does not.
+  const auto seen = std::exchange(conditioning_, std::nullopt);
+  const bool is_found = lastly(false);
+  if (!conditioning_) conditioning_ = seen;
+  return is_found;
 }
 
 // The energy of a run is its own judge, as the exact motion keeps it. A run with error control
 // gives the scale: the largest kinetic energy.
 bool Search::judge_energy(double accuracy) {
-  constexpr double least = 1e-13;
+  constexpr double largest_tolerance = 1e-3;
+  std::int64_t forces_left = forces_within(much_work);
   const bool implicitly = stage_.model().system().has_massless();
-  for (const Method& method : methods()) {
-    if (method.knob != Knob::rtol || method.is(Trait::implicit) != implicitly ||
-        !method.stock_of.empty() || !applies_to(method, stage_.model().system()) ||
-        (implicitly && !method.is(Trait::accepts_massless)))
-      continue;
-    for (double rtol = std::min(0.1 * accuracy, 1e-3); rtol >= least; rtol /= 10) {
-      const Trial& trial = run(method, rtol, {.forces = forces_within(much_work)});
+  const Trial* last = nullptr;
+  for (const Method* method : with_error_control(implicitly, accuracy)) {
+    for (double rtol = std::min(accuracy / 10, largest_tolerance);
+         rtol >= least_tolerance && forces_left > 0; rtol /= 10) {
+      const Trial& trial = run(*method, rtol, {.forces = forces_left});
+      forces_left -= trial.summary.counts.force_evaluations;
       if (!trial.reached_end()) break;
       measure_by(trial);
+      last = &trial;
       judges_[&trial] = {0, nullptr, false};
       if (is_known(trial, accuracy)) return true;
     }
-    if (!judges_.empty()) return false;
+    if (last) break;
+  }
+  if (!last || implicitly || !may_forecast(*last)) return false;
+  // Steps of fixed length may keep an energy that is small beside its rounding.
+  constexpr int most_runs = 8;
+  learn();
+  for (int i = 0; i < most_runs; ++i) {
+    const auto next = promised(part_of_judge * accuracy, std::numeric_limits<double>::infinity());
+    if (!next) break;
+    if (is_known(run(*next->method, next->value, {.forces = forces_within(much_work)}), accuracy))
+      return true;
+    learn();
   }
   return false;
 }

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
 
 namespace qddot::inline measure {
 namespace {
@@ -54,11 +54,19 @@ std::optional<Candidate> Search::untried(const Trial& answer, double accuracy) c
       const double own = method.asks(Need::split_forces)
                              ? resolved_frequency(method, system, stage_.model().initial().q)
                              : forecast_->own().at(2);
-      const double steps = std::max(8.0, std::ceil(stage_.until() * own));
+      double steps = std::max(8.0, std::ceil(stage_.until() * own));
+      if (has_linear_step(method))
+        steps = std::max(steps, std::ceil(stage_.until() /
+                                          forecast_->step_by_frequency(method, accuracy)));
       value = stage_.until() / steps;
       forces = steps * (method.is(Trait::implicit) ? of_implicit_step : 1);
-    } else if (method.is(Trait::bounds_steps)) {
-      forces = method.order * stage_.until() * forecast_->w_motion();
+    } else {
+      // Steps of order p leave the accuracy if h w_p is its p-th root.
+      double steps = stage_.until() * forecast_->own().at(method.order) *
+                     std::pow(accuracy, -1.0 / method.order);
+      if (method.is(Trait::bounds_steps))
+        steps = std::max(steps, stage_.until() * forecast_->w_motion());
+      forces = steps * (method.is(Trait::implicit) ? of_implicit_step : method.order);
     }
     if (forces > static_cast<double>(answer.summary.counts.force_evaluations)) continue;
     return Candidate{&method, value, 0, 0};
@@ -69,13 +77,7 @@ std::optional<Candidate> Search::untried(const Trial& answer, double accuracy) c
 const Trial* Search::race(const Trial* answer, double accuracy) {
   if (answer->method->order == 0 || judges_.empty()) return answer;
   const double end = seconds_since(begin_) + seconds_of_race(*answer);
-  if (!forecast_) {
-    double w = bound_of_w_;
-    for (const State& state : answer->path)
-      w = std::max(w, frequency_bound(stage_.model().system(), state.q));
-    if (!(w > 0) || !std::isfinite(w)) return answer;
-    begin_forecast(answer->path, w);
-  }
+  if (!may_forecast(*answer)) return answer;
   learn();
   while (seconds_left() > 0) {
     const double left = end - seconds_since(begin_);

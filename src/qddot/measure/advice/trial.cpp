@@ -109,7 +109,7 @@ double Stage::energy_error(const Trial& trial) const {
 
 double Stage::distance(const Trial& one, const Trial& other) const {
   // Between the looks the largest distance may be larger.
-  constexpr double between = 1.2;
+  constexpr double between = 1.4;
   if (of_ == AccuracyOf::path) return between * std::ranges::max(distances(one, other));
   return errors_between(model_, one.path.back(), other.path.back(), 0, scales_).position;
 }
