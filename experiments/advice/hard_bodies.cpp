@@ -25,6 +25,7 @@ void bounce(HardCase& c, Draws& draw) {
     for (std::size_t j = 0; j < i; ++j) c.pairs.push_back({j, i, law});
   }
   c.gives_stiffness = draw.happens(0.5);
+  c.gives_energy = c.of == AccuracyOf::energy || draw.happens(0.8);
   c.until = 1.5 * law.size / speed * draw.by_logarithm(1, 15);
 }
 

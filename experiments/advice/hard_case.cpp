@@ -33,7 +33,9 @@ constexpr std::array hard_motions = {HardKind{"near miss", near_miss},
                                      HardKind{"commensurate", commensurate},
                                      HardKind{"quartic", quartic},
                                      HardKind{"stiff", stiff},
-                                     HardKind{"massless joints", massless_joints}};
+                                     HardKind{"massless joints", massless_joints},
+                                     HardKind{"two parts", two_parts},
+                                     HardKind{"far from zero", far_from_zero}};
 
 State start_of(const Scene& scene) {
   const auto d = static_cast<Index>(scene.dimension);
@@ -49,8 +51,9 @@ State start_of(const Scene& scene) {
 
 ReducedScene model_of(const HardCase& c, const Reductions& reductions) {
   if (c.pairs.empty()) return ReducedScene(c.scene, reductions);
-  return ReducedScene(system_of_pairs(c.scene.nodes, c.scene.dimension, c.pairs, c.gives_stiffness),
-                      start_of(c.scene), c.scene.dimension);
+  return ReducedScene(
+      system_of_pairs(c.scene.nodes, c.scene.dimension, c.pairs, c.gives_stiffness, c.gives_energy),
+      start_of(c.scene), c.scene.dimension);
 }
 
 }  // namespace

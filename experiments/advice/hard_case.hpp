@@ -16,9 +16,10 @@ struct HardCase {
   std::string kind{};
   Scene scene{};                 // without springs if there are own forces
   std::vector<OwnPair> pairs{};  // the own forces
-  bool gives_stiffness = true;   // whether own forces have a K
-  double until = 0;              // [s]
-  double accuracy = 0;           // relative
+  // Whether own forces have a K, and a V.
+  bool gives_stiffness = true, gives_energy = true;
+  double until = 0;     // [s]
+  double accuracy = 0;  // relative
   AccuracyOf of = AccuracyOf::positions;
 
   // The model that is asked, with all reductions of a scene.

@@ -126,7 +126,7 @@ void late_event(HardCase& c, Draws& draw) {
 void commensurate(HardCase& c, Draws& draw) {
   const double k = draw.by_logarithm(10, 1000), m = draw.by_logarithm(0.1, 3);
   const double l0 = draw.between(0.5, 1.2), r = l0 * draw.between(1.05, 2.5);
-  const int times = draw.whole(1, 200), form = draw.one_of(4);
+  const int times = draw.whole(1, 2000), form = draw.one_of(4);
   c.scene = {.dimension = draw.happens(0.5) ? 2 : 3};
   c.scene.nodes = {{.pinned = true}, {.position = {r, 0, 0}, .mass = m}};
   double period = 2 * std::numbers::pi * std::sqrt(m / k);

@@ -38,6 +38,10 @@ void before_horizon(HardCase& c, Draws& draw);
 void prestressed(HardCase& c, Draws& draw);
 // A free net that spins, moves, and may fall.
 void spinning(HardCase& c, Draws& draw);
+// Two nets that do not touch, one of which moves less and faster, or not at all.
+void two_parts(HardCase& c, Draws& draw);
+// Another kind's motion, 10 to 1e6 m from the origin.
+void far_from_zero(HardCase& c, Draws& draw);
 // Some springs are 1e2 to 1e6 times as stiff as the others, and named.
 void stiff(HardCase& c, Draws& draw);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -143,6 +144,35 @@ void stiff(HardCase& c, Draws& draw) {
   if (!any) c.scene.springs[0].law.stiffness *= ratio;
   c.scene.stiff_above = 100.5;
   c.until = 2 * std::numbers::pi / fastest(c) * draw.by_logarithm(3, 500);
+}
+
+void two_parts(HardCase& c, Draws& draw) {
+  const int d = 1 + draw.one_of(3);
+  const bool rests = draw.happens(0.2);
+  c.scene = net(draw, d, 2 + draw.one_of(4), 0.1, true);
+  Scene other = net(draw, d, 2 + draw.one_of(4), rests ? 0 : 1e-3, draw.happens(0.7));
+  for (Node& node : c.scene.nodes) node.velocity = draw.in_box(d, 1);
+  const double stiffer = draw.by_logarithm(1, 1e4), size = draw.by_logarithm(1e-6, 1);
+  const std::size_t first = c.scene.nodes.size();
+  for (Node& node : other.nodes) {
+    if (!rests) node.velocity = draw.in_box(d, size);
+    node.position[0] += 6;
+    c.scene.nodes.push_back(node);
+  }
+  for (Spring& spring : other.springs) {
+    spring.law.stiffness *= stiffer;
+    for (std::size_t& node : spring.nodes) node += first;
+    c.scene.springs.push_back(spring);
+  }
+  c.until = 2 * std::numbers::pi / fastest(c) * draw.by_logarithm(3, 300);
+}
+
+void far_from_zero(HardCase& c, Draws& draw) {
+  constexpr std::array motions = {near_miss, fold, spinning, weakly_coupled, small_motion};
+  motions[static_cast<std::size_t>(draw.one_of(std::ssize(motions)))](c, draw);
+  const double far = draw.by_logarithm(10, 1e6);
+  const Eigen::Vector3d by = far * random_direction(draw, c.scene.dimension);
+  for (Node& node : c.scene.nodes) node.position += by;
 }
 
 }  // namespace qddot::judged_advice

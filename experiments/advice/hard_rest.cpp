@@ -157,7 +157,7 @@ void massless_joints(HardCase& c, Draws& draw) {
     if (draw.happens(0.5)) c.scene.gravity[1] = -9.81;
   }
   for (Node& node : c.scene.nodes) {
-    if (node.mass > 0) node.velocity = draw.in_box(d, draw.by_logarithm(0.01, 1));
+    if (node.mass > 0) node.velocity = draw.in_box(d, draw.by_logarithm(0.01, 5));
   }
   c.until = 2 * std::numbers::pi * std::sqrt(m / k) * draw.by_logarithm(0.3, 30);
 }

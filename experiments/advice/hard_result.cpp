@@ -47,7 +47,7 @@ double error_of(const Seen& seen, const ReducedScene& model, const TrueMotion& t
                 const Scales& scales, AccuracyOf of) {
   if (!seen.reached_end) return std::numeric_limits<double>::infinity();
   double error = 0;
-  const double energy = model.energy(model.initial());
+  const double energy = of == AccuracyOf::energy ? model.energy(model.initial()) : 0;
   for (std::size_t i = of == AccuracyOf::positions ? seen.path.size() - 1 : 0; i < seen.path.size();
        ++i) {
     const double here = of == AccuracyOf::energy

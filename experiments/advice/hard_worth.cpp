@@ -43,8 +43,9 @@ void add_figures(std::vector<Figure>& figures, const std::string& which,
       },
       [](const R& r) { return r.is_within(r.error_estimate); });
   share("claimed_beyond_rounding",
-        "cases that rounding makes impossible three times over, and an answer",
-        &R::is_beyond_rounding, [](const R& r) { return r.is_claimed; });
+        "cases that rounding makes impossible three times over, and a false answer",
+        &R::is_beyond_rounding,
+        [](const R& r) { return r.is_claimed && !(r.error <= r.accuracy); });
   share(
       "advised_within_accuracy", "advised runs with an error of at most the accuracy",
       [](const R& r) { return r.is_well_posed() && !r.advised.empty(); },
@@ -111,8 +112,9 @@ std::vector<std::string> lines_of(const std::vector<HardResult>& results, bool o
                        : r.is_judged() && !r.is_within(r.accuracy)       ? "FALSE"
                        : r.is_judged() && !r.is_within(r.error_estimate) ? "bar"
                        : r.is_well_posed() && !r.is_claimed              ? "refused"
-                       : r.is_beyond_rounding() && r.is_claimed          ? "beyond"
-                                                                         : "";
+                       : r.is_beyond_rounding() && r.is_claimed && !(r.error <= r.accuracy)
+                           ? "beyond"
+                           : "";
     if (!*what && !of_all) continue;
     lines.push_back(
         fmt::format("{:<8.0f} {:<15} {:<9} {:<8} A {:.1e}  bar {:.1e}  error {:.1e}  rounding "

@@ -7,8 +7,13 @@ namespace {
 
 class Pairs : public System {
  public:
-  Pairs(Vec mass, int dimension, std::vector<OwnPair> pairs)
-      : System(std::move(mass)), dimension_(dimension), pairs_(std::move(pairs)) {}
+  Pairs(Vec mass, int dimension, std::vector<OwnPair> pairs, bool computes_energy)
+      : System(std::move(mass)),
+        dimension_(dimension),
+        pairs_(std::move(pairs)),
+        computes_energy_(computes_energy) {}
+
+  bool has_potential() const override { return computes_energy_; }
 
   double potential(const ConstVec& q) const override {
     double sum = 0;
@@ -35,13 +40,14 @@ class Pairs : public System {
 
   int dimension_;
   std::vector<OwnPair> pairs_;
+  bool computes_energy_;
 };
 
 // With a K of its own, as a full matrix.
 class StiffPairs final : public Pairs {
  public:
-  StiffPairs(Vec mass, int dimension, std::vector<OwnPair> pairs)
-      : Pairs(std::move(mass), dimension, std::move(pairs)) {
+  StiffPairs(Vec mass, int dimension, std::vector<OwnPair> pairs, bool computes_energy)
+      : Pairs(std::move(mass), dimension, std::move(pairs), computes_energy) {
     const Eigen::MatrixXd all = Eigen::MatrixXd::Ones(size(), size());
     pattern_ = Eigen::MatrixXd(all.triangularView<Eigen::Lower>()).sparseView();
     pattern_.coeffs().setZero();
@@ -79,18 +85,18 @@ class StiffPairs final : public Pairs {
 
 std::shared_ptr<const System> system_of_pairs(const std::vector<Node>& nodes, int dimension,
                                               const std::vector<OwnPair>& pairs,
-                                              bool computes_stiffness) {
+                                              bool computes_stiffness, bool computes_energy) {
   Vec mass(static_cast<Index>(nodes.size()) * dimension);
   for (Index i = 0; i < mass.size(); ++i)
     mass[i] = nodes[static_cast<std::size_t>(i / dimension)].mass;
   if (computes_stiffness)
-    return std::make_shared<const StiffPairs>(std::move(mass), dimension, pairs);
+    return std::make_shared<const StiffPairs>(std::move(mass), dimension, pairs, computes_energy);
   std::vector<std::pair<Index, Index>> all;
   for (Index i = 0; i < mass.size(); ++i) {
     for (Index j = 0; j < i; ++j) all.push_back({i, j});
   }
   return std::make_shared<const DifferencedStiffness>(
-      std::make_shared<const Pairs>(std::move(mass), dimension, pairs), all);
+      std::make_shared<const Pairs>(std::move(mass), dimension, pairs, computes_energy), all);
 }
 
 }  // namespace qddot::judged_advice

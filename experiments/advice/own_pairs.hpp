@@ -49,10 +49,11 @@ struct OwnPair {
 };
 
 // The system of nodes, none of them pinned, with these forces. Its unknowns are their coordinates
-// in `dimension` directions. If `computes_stiffness` is false, K comes from differences of f.
+// in `dimension` directions. If `computes_stiffness` is false, K comes from differences of f. If
+// `computes_energy` is false, the system has no V.
 std::shared_ptr<const System> system_of_pairs(const std::vector<Node>& nodes, int dimension,
                                               const std::vector<OwnPair>& pairs,
-                                              bool computes_stiffness);
+                                              bool computes_stiffness, bool computes_energy);
 
 // The same forces for PlainMotion: three coordinates a node.
 template <class Real>

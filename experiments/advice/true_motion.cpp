@@ -10,14 +10,15 @@ namespace qddot::judged_advice {
 namespace {
 
 constexpr int looks = 300;
-constexpr int most_steps = 40000;
+// With joints a step costs much more.
+constexpr int most_steps_of_all = 40000, most_steps_with_joints = 3000;
 constexpr long double tolerance = 1e-17L;
 constexpr double rounding = 0x1p-52;
 
 // Adds all nodes at the times to the path, as far as the motion goes.
 template <class Motion>
-bool follow(Motion& motion, const std::vector<double>& times,
-            std::vector<std::vector<Node>>& path) {
+bool follow(Motion& motion, const std::vector<double>& times, std::vector<std::vector<Node>>& path,
+            int most_steps) {
   for (const double t : times) {
     if (!motion.advance(t, most_steps - motion.tried_steps())) return false;
     std::vector<Node> nodes = motion.model().scene().nodes;
@@ -64,11 +65,13 @@ TrueMotion followed(const Model& model, const HardCase& hard) {
   const long double own = energy(motion.state());
   truth.energy_conditioning =
       static_cast<double>(std::abs(energy(twin.state()) - own) + rounding * std::abs(own));
+  const bool has_joints = std::ranges::any_of(
+      hard.scene.nodes, [](const Node& node) { return !node.pinned && node.mass == 0; });
+  const int most_steps = has_joints ? most_steps_with_joints : most_steps_of_all;
   std::vector<std::vector<Node>> beside;
-  if (!follow(motion, truth.times, truth.path) || !follow(twin, truth.times, beside)) {
+  if (!follow(motion, truth.times, truth.path, most_steps) ||
+      !follow(twin, truth.times, beside, most_steps)) {
     const bool is_too_long = std::max(motion.tried_steps(), twin.tried_steps()) >= most_steps;
-    const bool has_joints = std::ranges::any_of(
-        hard.scene.nodes, [](const Node& node) { return !node.pinned && node.mass == 0; });
     truth.unknown_because =
         has_joints && !is_too_long ? goes_slack : "the true motion takes too many steps";
     return truth;

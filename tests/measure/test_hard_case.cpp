@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(figures_count_what_their_names_say) {
   beyond_bar.error = 6e-4;
   false_one.error = 2e-3;
   refused.is_claimed = false;
-  ill_posed.conditioning = 1e-2;
+  ill_posed.conditioning = 1e-2, ill_posed.error = 1e-2;
   lost.left_out = "no truth";
   lost.error = 1;
   const std::vector<HardResult> results = {within, beyond_bar, false_one, refused, ill_posed, lost};
