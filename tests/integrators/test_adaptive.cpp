@@ -40,9 +40,9 @@ Film film(int frames, double t_end) {
 
 // A mass that runs into a wall that stiffens with depth: q'' = -50 q^3 at 10 m/s from far away. Its
 // rates at first are a fraction of the fastest ones.
-Problem wall() {
+Problem wall(double quartic = 5000) {
   Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{-0.05}}, Vec{{10}}}};
-  p.network.anchors = {{0, {0, 0, 0}, {.stiffness = 1e-3, .quartic = 5000}}};
+  p.network.anchors = {{0, {0, 0, 0}, {.stiffness = 1e-3, .quartic = quartic}}};
   return p;
 }
 
@@ -100,12 +100,13 @@ BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_pair) {
 BOOST_AUTO_TEST_CASE(forces_are_those_of_the_stages_and_nothing_else) {
   // A run begins with one force, and with one more of an Euler step for the first step size. Each
   // attempt takes s - 1 stages. A step whose end is not its last stage takes one there.
-  const auto system = make_mass_spring(wall().network);
+  const Problem hard = wall(5e5);  // hard enough for rejections
+  const auto system = make_mass_spring(hard.network);
   for (const auto& [name, pair] : pairs()) {
     std::int64_t rejected = 0;
     for (const double rtol : {1e-2, 1e-6, 1e-10}) {
       BOOST_TEST_CONTEXT(name << " at " << rtol) {
-        const Run r = run(method_named(name), *system, wall().initial, 3, {.rtol = rtol});
+        const Run r = run(method_named(name), *system, hard.initial, 3, {.rtol = rtol});
         BOOST_TEST(r.summary.message == "");
         const Counts& k = r.summary.counts;
         const auto fresh = static_cast<std::int64_t>(pair.c.size()) - 1;
@@ -209,9 +210,10 @@ BOOST_AUTO_TEST_CASE(between_steps_errors_are_of_the_size_of_those_at_their_ends
         }
         const double between = largest_error(watched.seen, c), at_ends = largest_error(ends, c);
         BOOST_TEST_CONTEXT(name << " at " << rtol << ": " << between << ", " << at_ends) {
-          // There are 20 ends and 316 times between; a rounding of q by 1e-15 is enlarged 1/h times
-          // in v.
-          BOOST_TEST(between < 5 * at_ends + 1e-11);
+          // There are 20 ends and 316 times between, which are trusted to half of a tolerance (in
+          // the norm over all unknowns, of sizes up to 5); a rounding of q by 1e-15 is enlarged 1/h
+          // times in v.
+          BOOST_TEST(between < 5 * at_ends + rtol + 1e-11);
         }
       }
     }
@@ -275,6 +277,59 @@ BOOST_DATA_TEST_CASE(tolerances_are_weighed_by_the_lengths_and_speeds_they_are_f
   BOOST_TEST(counts(small, scaled) == metres);
   BOOST_TEST(counts(p, {.rtol = 1e-7, .atol = 2e-7}) == metres);
   BOOST_TEST(!(counts(small, {.rtol = 1e-7}) == metres));
+}
+
+BOOST_DATA_TEST_CASE(steps_do_not_depend_on_the_units_of_time_and_length, interpolating(), method) {
+  // The same motion with times and lengths in other units, powers of two: the same steps.
+  const Problem p = linear_hammock(2);
+  const auto scaled = [&](double time, double length) {
+    Problem other = p;
+    other.initial.q *= length;
+    other.initial.v *= length / time;
+    other.network.gravity *= length / (time * time);
+    for (auto& anchor : other.network.anchors) anchor.point *= length;
+    for_springs(other.network, [&](auto& spring) { spring.law.stiffness /= time * time; });
+    return run(method, other, 2 * time,
+               {.rtol = 1e-7, .length = 2 * length, .speed = 2 * length / time});
+  };
+  const Run here = scaled(1, 1);
+  for (const auto& [time, length] :
+       {std::pair{1024., 1.}, {1. / 1024, 1.}, {1e6, 1.}, {1e-6, 1e3}}) {
+    BOOST_TEST_CONTEXT(method.name << " in units of " << time << " s and " << length << " m") {
+      const Run there = scaled(time, length);
+      BOOST_TEST(there.summary.counts == here.summary.counts);
+      // Steps that differ by rounding in units that are no powers of two: their errors of 1e-7
+      // differ by as small a part, and numbers up to 5 round in some hundred steps.
+      BOOST_TEST(distance(there.state.q / length, here.state.q) < 1e-11);
+    }
+  }
+}
+
+BOOST_DATA_TEST_CASE(a_start_that_says_little_is_left_in_any_unit_of_time, interpolating(),
+                     method) {
+  // At rest in a weak field far from where it leads; the run of 1e6 s is 1e6 units or one.
+  for (const double time : {1., 1024. * 1024.}) {
+    Problem p{{.dimension = 1, .gravity = {1e-12 / time / time, 0, 0}, .node_mass = Vec::Ones(1)},
+              {0, Vec::Ones(1), Vec::Zero(1)}};
+    const Run r = run(method, p, 1e6 * time, {.rtol = 1e-6, .speed = 1 / time});
+    BOOST_TEST(r.summary.message == "");
+    BOOST_TEST(std::abs(r.state.q[0] - 1.5) < 1e-9);  // some roundings of 1/2 a t^2
+    BOOST_TEST(r.summary.counts.steps < 20);
+  }
+}
+
+BOOST_DATA_TEST_CASE(an_observer_changes_no_end_where_states_are_separate_steps, interpolating(),
+                     method) {
+  // A mass passes its anchor on a line, where K changes along each step and no polynomial leads
+  // over the jump.
+  Problem p{{.dimension = 1, .node_mass = Vec::Ones(1)}, {0, Vec{{1.2}}, Vec{{-6}}}};
+  p.network.anchors = {{0, {0, 0, 0}, {.stiffness = 20, .rest_length = 0.5, .quartic = 50}}};
+  Film watched = film(97, 2);
+  const Run a = run(method, p, 2, {.rtol = 1e-6}, watched.observer());
+  const Run b = run(method, p, 2, {.rtol = 1e-6});
+  BOOST_TEST(b.summary.message == "");
+  BOOST_TEST(a.summary.counts.force_evaluations > b.summary.counts.force_evaluations);
+  BOOST_TEST(same(a.state, b.state));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -18,13 +18,20 @@ Instant monomial(double t, int degree) {
   return {{t, Vec{{q, 5 + 3 * q}}, Vec{{v, 3 * v}}}, Vec{{a, 3 * a}}};
 }
 
-State interpolated(std::size_t instants, int degree, double t) {
+// Instants of a monomial, and where they are.
+struct Course {
   std::vector<Instant> list;
-  for (std::size_t i = 0; i < instants; ++i) list.push_back(monomial(times[i], degree));
   std::vector<const Instant*> pointers;
-  for (const Instant& instant : list) pointers.push_back(&instant);
+  Course(std::size_t instants, int degree) {
+    for (std::size_t i = 0; i < instants; ++i) list.push_back(monomial(times[i], degree));
+    for (const Instant& instant : list) pointers.push_back(&instant);
+  }
+  Course(const Course&) = delete;
+};
+
+State interpolated(std::size_t instants, int degree, double t) {
   State at{0, Vec(2), Vec(2)};
-  interpolate(pointers, t, at);
+  interpolate(Course(instants, degree).pointers, t, at);
   BOOST_TEST(at.t == t);
   return at;
 }
@@ -50,6 +57,29 @@ BOOST_AUTO_TEST_CASE(
           BOOST_TEST(distance(exact.q - at.q, both) < rounding);
           BOOST_TEST(distance(exact.v - at.v, slope * both) < rounding);
         }
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(without_an_instant_the_change_is_the_error_of_the_others) {
+  for (std::size_t m = 3; m <= most_instants; ++m) {
+    const int degree = 3 * static_cast<int>(m - 1);  // exact with all of them
+    const Course course(m, degree);
+    for (std::size_t without = 0; without < m; ++without) {
+      BOOST_TEST_CONTEXT(m << " instants without " << without) {
+        const double t = 0.6;
+        double product = 1, slope = 0;
+        for (std::size_t i = 0; i < m; ++i) {
+          if (i == without) continue;
+          product *= std::pow(t - times[i], 3);
+          slope += 3 / (t - times[i]);
+        }
+        const Vec both{{product, 3 * product}};
+        Vec q(2), v(2);
+        change_without(without, course.pointers, t, q, v);
+        BOOST_TEST(distance(q, both) < rounding);
+        BOOST_TEST(distance(v, slope * both) < rounding);
       }
     }
   }

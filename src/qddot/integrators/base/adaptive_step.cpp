@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/model/vector_updates.hpp"
 
@@ -19,10 +21,15 @@ constexpr double safety = 0.9, smallest_factor = 0.2, largest_factor = 5;
 constexpr double proportional = 0.7, integral = 0.4, smallest_error = 1e-4;
 // The factor after an attempt without an error estimate.
 constexpr double factor_of_failure = 0.25;
+// A length whose sign is not known to this many tolerances has none that can be told.
+constexpr double unknown_sign = 1;
 // A step is stretched by up to this factor to meet the end.
 constexpr double stretch = 1.01;
-// The first step, as a fraction of the run, if the start and its rate of change say nothing.
-constexpr double blind_step = 1e-6;
+// The first step, as a fraction of the run, if the start and its rate of change say nothing: a
+// start of less than the second number of its tolerance.
+constexpr double blind_step = 1e-6, nothing = 1e-5;
+// A polynomial is trusted if its change without one instant is at most so many tolerances.
+constexpr double trusted = 0.5;
 // A step ends before a jump by this part of its length.
 constexpr double short_of_jump = 1e-6;
 // A step over a jump takes some roundings of the time. It is longer for slow positions, whose
@@ -44,6 +51,7 @@ AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Opt
       error_v_(system.size()),
       instants_(std::max<std::size_t>(accuracy.instants, 2) + 1,
                 {{0, Vec(system.size()), Vec(system.size())}, Vec(system.size())}),
+      aside_{instants_[0], instants_[0]},
       kinks_(system) {
   // No polynomial leads over a jump.
   if (kinks_.has_kinks() && accuracy_.instants > 2) accuracy_.instants = 0;
@@ -70,23 +78,27 @@ void AdaptiveStep::start(const State& state) {
   last_error_ = 1;
   was_rejected_ = false;
   h_before_jump_ = 0;
+  judged_ = -INFINITY;
+  moved();
   creep_ = Creep(state.t);
 }
 
-// h_0 changes y = (q, v) by a hundredth of itself. h_1 is where a Taylor series with the larger of
-// |y'| and |y''| leaves a hundredth of the tolerance.
+// Let d0, d1 and d2 be the sizes of y = (q, v), y' and y'' in tolerances. h_0 changes y by a
+// hundredth of itself. h_1 is where an error d1 w^p h^(p+1), with the rate w = max(d1/d0, d2/d1)
+// by which derivatives grow, is a hundredth of the tolerance. Nothing here depends on units.
 double AdaptiveStep::first_step() {
   const auto& [now, a] = last();
   const double d0 = norm(now, now.q, now.v), d1 = norm(now, now.v, a);
-  const double blind = blind_step * (t_end() - now.t);
-  const double h0 = d0 > 1e-5 && d1 > 1e-5 ? 0.01 * d0 / d1 : blind;
+  const double whole = t_end() - now.t, blind = blind_step * whole;
+  const double h0 = d0 > nothing && d1 > 0 ? std::min(0.01 * d0 / d1, whole) : blind;
   State& ahead = last(instants_.size() - 1).state;
   ahead.q = now.q + h0 * now.v;
   acceleration(ahead.q, error_v_);
   error_v_ = (error_v_ - a) / h0;
-  const double largest = std::max(d1, norm(now, a, error_v_));
-  const double h1 = largest > 1e-15 ? std::pow(0.01 / largest, 1.0 / (accuracy_.error_order + 1))
-                                    : std::max(blind, 1e-3 * h0);
+  const double d2 = norm(now, a, error_v_);
+  const double w = std::max(d0 > nothing ? d1 / d0 : 0, d1 > 0 ? d2 / d1 : 0);
+  const double h1 =
+      w > 0 ? std::pow(0.01 * (w / d1), 1.0 / (accuracy_.error_order + 1)) / w : 100 * h0;
   const double h = std::min(100 * h0, h1);
   return h > 0 ? h : blind;
 }
@@ -115,25 +127,79 @@ bool AdaptiveStep::can_show(double t) {
 }
 
 Outcome AdaptiveStep::show(double t, State& state) {
-  for (std::size_t i = 0; i < std::min(count_, instants_.size() - 1); ++i) {
-    if (last(i).state.t != t) continue;
-    state = last(i).state;
+  std::size_t before = 0;
+  while (last(before).state.t > t) ++before;
+  const Instant& from = last(before);
+  if (from.state.t == t) {
+    state = from.state;
     return Outcome::reached_end;
   }
-  if (accuracy_.instants > 0) {
-    std::array<const Instant*, most_instants> list;
-    const std::size_t used = std::min(count_, accuracy_.instants);
-    for (std::size_t i = 0; i < used; ++i) list[i] = &last(i);
-    interpolate(std::span(list).first(used), t, state);
-    return Outcome::reached_end;
+  std::array<const Instant*, most_instants> list;
+  const std::size_t used = std::min(count_, accuracy_.instants);
+  for (std::size_t i = 0; i < used; ++i) list[i] = &last(i);
+  const auto instants = std::span(list).first(used);
+  if (!is_trusted(instants, from)) return step_aside(from, t, state);
+  interpolate(instants, t, state);
+  return Outcome::reached_end;
+}
+
+// Without the instant t_k the polynomial changes by prod_{i != k} (t - t_i)^3 times one of second
+// degree. If that is zero at both places, its slope is not.
+bool AdaptiveStep::is_trusted(std::span<const Instant* const> instants, const Instant& from) {
+  if (instants.size() < 3) return false;
+  const double t = from.state.t;
+  if (judged_ == t) return judged_trusted_;
+  judged_ = t;
+  double end = last().state.t;
+  for (const Instant* instant : instants) {
+    if (instant->state.t > t) end = std::min(end, instant->state.t);
   }
-  const Instant& from = last(1);
-  Instant& at = last(instants_.size() - 1);
-  Outcome outcome = attempt(from, t - from.state.t, at, error_q_, error_v_);
-  at.state.t = t;
-  if (outcome == Outcome::reached_end) outcome = check_step(from.state, at.state);
-  state = outcome == Outcome::reached_end ? at.state : from.state;
+  // The newest or the oldest; both ends of the step are among the rest.
+  const double ahead = instants.front()->state.t - end, behind = t - instants.back()->state.t;
+  const std::size_t farthest = ahead > behind ? 0 : instants.size() - 1;
+  judged_trusted_ = true;
+  for (const double part : {0.25, 0.75}) {
+    change_without(farthest, instants, t + part * (end - t), error_q_, error_v_);
+    judged_trusted_ = judged_trusted_ && norm(from.state, error_q_, error_v_) <= trusted;
+  }
+  return judged_trusted_;
+}
+
+Outcome AdaptiveStep::step_aside(const Instant& from, double t, State& state) {
+  moved();
+  const Instant* now = &from;
+  double h = t - from.state.t;
+  Outcome outcome = Outcome::reached_end;
+  for (std::size_t place = 0; now->state.t < t;) {
+    Instant& next = aside_[place];
+    const double left = t - now->state.t;
+    next.state.t = h < left ? now->state.t + h : t;
+    h = next.state.t - now->state.t;
+    outcome = must_stop() ? Outcome::over_budget : attempt(*now, h, next, error_q_, error_v_);
+    if (outcome == Outcome::reached_end) outcome = check_step(now->state, next.state);
+    if (outcome != Outcome::reached_end) break;
+    const double error = norm(now->state, error_q_, error_v_);
+    const double factor = factor_after(error);
+    // A step that cannot be shorter crosses a jump.
+    if (error > 1 && now->state.t + factor * h > now->state.t) {
+      h *= factor;
+      continue;
+    }
+    now = &next;
+    if (next.state.t == t) break;
+    complete(next);
+    moved();
+    place = 1 - place;
+  }
+  state = outcome == Outcome::reached_end ? now->state : from.state;
+  moved();
   return outcome;
+}
+
+double AdaptiveStep::factor_after(double error) const {
+  const double power = 1.0 / (accuracy_.error_order + 1);
+  const double factor = std::isfinite(error) ? safety * std::pow(error, -power) : factor_of_failure;
+  return std::clamp(factor, smallest_factor, 1.0);
 }
 
 double AdaptiveStep::step_size(double t, double longest) const {
@@ -161,21 +227,23 @@ Outcome AdaptiveStep::take_step() {
       error = norm(now.state, error_q_, error_v_);
       outcome = std::isfinite(error) ? check_step(now.state, next.state) : Outcome::not_finite;
     }
+    const bool may_jump = kinks_.has_kinks();
+    if (outcome == Outcome::reached_end && (error <= 1 || may_jump)) {
+      complete(next);
+      if (!std::isfinite(next.a.sum())) outcome = Outcome::not_finite;
+    }
     const Jump jump_here =
-        kinks_.has_kinks() && outcome == Outcome::reached_end ? jump(now, next, h) : Jump::none;
+        may_jump && outcome == Outcome::reached_end ? jump(now, next, h, error) : Jump::none;
+    if (jump_here == Jump::unknown) return Outcome::solver_failed;
     if (jump_here == Jump::ahead) {
       ++counts().rejected;
-      rejected();
       continue;
     }
     if (jump_here == Jump::over) error = std::min(error, 1.0);
-    if (error <= 1 && outcome == Outcome::reached_end) {
-      accepted(next);
-      if (!std::isfinite(next.a.sum())) outcome = Outcome::not_finite;
-    }
     if (outcome == Outcome::not_finite) error = INFINITY;
     if (error <= 1) {
       if (outcome != Outcome::reached_end) return outcome;
+      moved();
       accept(h_ > longest);
       const double factor =
           safety * std::pow(error, -proportional * power) * std::pow(last_error_, integral * power);
@@ -189,22 +257,36 @@ Outcome AdaptiveStep::take_step() {
     if (!(t + smallest_factor * h > t)) {
       return std::isfinite(error) ? Outcome::step_too_small : outcome;
     }
-    const double factor =
-        std::isfinite(error) ? safety * std::pow(error, -power) : factor_of_failure;
-    h_ = h * std::clamp(factor, smallest_factor, 1.0);
+    h_ = h * factor_after(error);
     was_rejected_ = true;
     ++counts().rejected;
-    rejected();
   }
 }
 
-AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, double h) {
-  const auto change = kinks_.first(now.state, next.state);
+AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, double h,
+                                      double error) {
+  const auto change = kinks_.first(now, next);
   if (!change) return Jump::none;
+  const double size = now.state.q.lpNorm<Eigen::Infinity>();
+  const double tolerance = unknown_sign * (atol_q_ + options().rtol * size);
+  const auto tell = [&](double nearest) {
+    set_message(
+        fmt::format("at t = {:.6g} s a spring on a line comes within {:.2g} m of length zero, "
+                    "where its force jumps, and whether it turns over or back is not known to "
+                    "the tolerance of {:.2g} m: take a smaller tolerance",
+                    now.state.t, nearest, tolerance));
+    return Jump::unknown;
+  };
+  if (!change->is_certain) {
+    if (error <= 1 && change->nearest <= tolerance) return tell(change->nearest);
+    h_ = change->part * h;
+    was_rejected_ = true;
+    return Jump::ahead;
+  }
   if (h_before_jump_ == 0) over_jump_ = 0;
   h_before_jump_ = std::max(h_before_jump_, h_);
   // The rounding of the time, and the time in which positions change by their rounding.
-  const double rounded = now.state.q.lpNorm<Eigen::Infinity>() / change->speed;
+  const double rounded = size / change->speed;
   const double least = roundings_over_jump * std::max(std::abs(now.state.t), h_before_jump_) +
                        std::min(roundings_over_jump * rounded, slowest_over_jump * h_before_jump_);
   over_jump_ = std::max(over_jump_, least);
@@ -213,7 +295,10 @@ AdaptiveStep::Jump AdaptiveStep::jump(const Instant& now, const Instant& next, d
     h_ = std::max(before, over_jump_);
     return Jump::ahead;
   }
-  if (!change->is_at_end) return Jump::over;
+  if (!change->is_at_end) {
+    const double depth = kinks_.depth(now, next);
+    return depth <= tolerance ? tell(depth) : Jump::over;
+  }
   // Far from the origin a length stays zero for longer.
   h_ = over_jump_ = 2 * h;
   return Jump::ahead;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <span>
 
 #include "qddot/integrators/base/creep.hpp"
 #include "qddot/integrators/base/hermite.hpp"
@@ -16,18 +19,28 @@ namespace qddot {
 // (the norm of SUNDIALS, with its weights: see Options). Step sizes are a PI controller's
 // (Gustafsson; Hairer and Wanner, Solving ODEs II, eq. IV.2.43c); the first one is that of Hairer,
 // Norsett and Wanner, Solving ODEs I, II.4. Only the end of the run is met exactly by a step.
-// States between steps are interpolated, or are ends of separate attempts.
+//
+// States between steps are interpolated where that is as accurate as the steps: without the
+// farthest of its instants the polynomial must not change by more than `trusted` tolerances inside
+// the step, in the same norm. After a sudden change of the steps it may leave the motion far
+// behind. States of a step whose polynomial is not trusted are ends of separate steps from its
+// start, as accurate as the run's own, and change nothing in the run.
 //
 // If the force jumps (see Kinks), a step ends just before the jump, whatever its error estimate. A
-// step of some roundings of the time crosses it, and the next begins on the other side.
+// step of some roundings of the time crosses it, and the next begins on the other side. Steps in
+// which a length may pass through zero and return are tried again shorter. If a length turns, or
+// would turn without the jump, within its tolerance of zero, the run ends: the two ways part there,
+// and which of them the motion takes is beyond the tolerance.
 class AdaptiveStep : public Integrator {
  protected:
   // Errors are of order h^(error_order + 1). States between steps are interpolated through
-  // `instants` ends of steps (an even number, two to most_instants). If `instants` is 0, they are
-  // separate attempts from the step before, each at its cost, as accurate as steps of any length.
+  // `instants` ends of steps (three to most_instants). If `instants` is 0, each is the end of
+  // separate steps, at their cost. `gives_acceleration` says whether an attempt sets the
+  // acceleration at its end.
   struct Accuracy {
     int error_order;
     std::size_t instants;
+    bool gives_acceleration = false;
   };
   AdaptiveStep(const Method& method, const System& system, const Options& options,
                const Accuracy& accuracy);
@@ -37,11 +50,8 @@ class AdaptiveStep : public Integrator {
   // none, the run ends at `now`.
   virtual Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q,
                           Vec& error_v) = 0;
-  // Called after each attempt whose errors are small enough; sets the acceleration at its end
-  // unless the attempt has done so. If that is not finite, the step is rejected after all.
-  virtual void accepted(Instant& next) { acceleration(next.state.q, next.a); }
-  // Called after each rejected attempt.
-  virtual void rejected() {}
+  // Called before an attempt that begins at another instant than the last one did.
+  virtual void moved() {}
   // The longest step [s] allowed from there; asked once a step.
   virtual double longest_step(const Instant&) { return std::numeric_limits<double>::infinity(); }
 
@@ -58,15 +68,24 @@ class AdaptiveStep : public Integrator {
   }
   bool can_show(double t);
   Outcome show(double t, State& state);
+  // Whether the polynomial through the instants follows the motion after `from`, one of them.
+  bool is_trusted(std::span<const Instant* const> instants, const Instant& from);
+  // The state at t by separate steps from that instant.
+  Outcome step_aside(const Instant& from, double t, State& state);
+  // Sets the acceleration at the end of an attempt unless the attempt has done so.
+  void complete(Instant& next) {
+    if (!accuracy_.gives_acceleration) acceleration(next.state.q, next.a);
+  }
+  double factor_after(double error) const;
   double first_step();
   // The next step from t: h_, at most `longest`, and to the end exactly.
   double step_size(double t, double longest) const;
   Outcome take_step();
   void accept(bool is_limited);
   // The relation of a step of h to `next` with jumps of the force: it crosses none, it may cross
-  // one, or a jump is ahead and the step is tried again with h_.
-  enum class Jump { none, over, ahead };
-  Jump jump(const Instant& now, const Instant& next, double h);
+  // one, a jump is or may be ahead and the step is tried again with h_, or it cannot be told.
+  enum class Jump { none, over, ahead, unknown };
+  Jump jump(const Instant& now, const Instant& next, double h, double error);
   // The weighted root mean square of a pair of vectors.
   double norm(const State& at, const Vec& q, const Vec& v) const;
 
@@ -77,6 +96,9 @@ class AdaptiveStep : public Integrator {
   Vec error_q_, error_v_;
   std::vector<Instant> instants_;  // a ring buffer, with a place for the next attempt
   std::size_t newest_ = 0, count_ = 0;
+  std::array<Instant, 2> aside_;
+  double judged_ = -INFINITY;  // [s], the start of the last step that was judged
+  bool judged_trusted_ = false;
   KinkSearch kinks_;
   // While a jump is ahead: h_ as it was before, and the step over the jump; else zero.
   double h_before_jump_ = 0, over_jump_ = 0;

@@ -20,4 +20,9 @@ constexpr std::size_t most_instants = 4;
 // prod |t - t_i|^3 / (3m)! (Davis, Interpolation and Approximation, theorem 3.5.1).
 void interpolate(std::span<const Instant* const> instants, double t, State& at);
 
+// Sets q and v to what that polynomial changes at t if one of its m instants (three at least) is
+// left out: what that instant tells of the error.
+void change_without(std::size_t one, std::span<const Instant* const> instants, double t, Vec& q,
+                    Vec& v);
+
 }  // namespace qddot

@@ -14,7 +14,8 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
 
 Nystrom::Nystrom(const Method& method, const System& system, const Options& options,
                  const NystromPair& pair, std::size_t instants)
-    : AdaptiveStep(method, system, options, {pair.lower_order, instants}),
+    : AdaptiveStep(method, system, options,
+                   {pair.lower_order, instants, pair.is_first_same_as_last()}),
       pair_(pair),
       error_b_(difference(pair.b, pair.lower_b)),
       error_b_prime_(difference(pair.b_prime, pair.lower_b_prime)),
@@ -44,10 +45,6 @@ Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error
   set_combination(h * h, k, error_b_, error_q);
   set_combination(h, k, error_b_prime_, error_v);
   return Outcome::reached_end;
-}
-
-void Nystrom::accepted(Instant& next) {
-  if (!is_first_same_as_last_) AdaptiveStep::accepted(next);
 }
 
 }  // namespace qddot

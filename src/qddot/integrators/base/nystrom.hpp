@@ -24,7 +24,6 @@ class Nystrom final : public AdaptiveStep {
   void start(const State& state) override;
   double longest_step(const Instant& now) override;
   Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) override;
-  void accepted(Instant& next) override;
 
   const NystromPair& pair_;
   std::vector<double> error_b_, error_b_prime_;

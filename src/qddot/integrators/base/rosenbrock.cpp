@@ -6,8 +6,9 @@
 namespace qddot {
 namespace {
 
-// Interpolation between two ends of steps has an error of order h^6, a step one of order h^5.
-constexpr std::size_t instants = 2;
+// The polynomial through three ends of steps and the one through two differ by an order of h^6; a
+// step's error is of order h^5.
+constexpr std::size_t instants = 3;
 // The part of a step's allowed error that an iterative solve for a stage may leave. Nothing
 // corrects it, later stages multiply it by up to some 30, and it adds up over the steps. The
 // formula's own errors are far below the estimate.
@@ -53,8 +54,7 @@ void Rosenbrock::start(const State& state) {
   has_k_ = false;
 }
 
-void Rosenbrock::accepted(Instant& next) {
-  AdaptiveStep::accepted(next);
+void Rosenbrock::moved() {
   if (!system().stiffness_is_constant()) has_k_ = false;
 }
 

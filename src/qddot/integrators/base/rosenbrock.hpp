@@ -26,9 +26,9 @@ class Rosenbrock final : public AdaptiveStep {
              const RosenbrockTable& table, int error_order);
 
  private:
-  void start(const State& state) override;
   Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) override;
-  void accepted(Instant& next) override;
+  void start(const State& state) override;
+  void moved() override;
   bool factorize(const Vec& q, double g);
   // The part of M u that an iterative solve for a stage may leave.
   double tolerance(const State& now, double g, const Vec& u) const;
