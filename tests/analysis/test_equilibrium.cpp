@@ -194,6 +194,67 @@ BOOST_AUTO_TEST_CASE(random_networks_come_to_rest_however_they_start) {
   }
 }
 
+// Networks that lie in a line or a plane of space, with springs longer and shorter than they are
+// drawn: balance in the line or plane is a saddle. Hubs in regular polygons are symmetric, too, and
+// have equal curvatures.
+BOOST_AUTO_TEST_CASE(random_symmetric_and_prestressed_networks_end_in_minima) {
+  std::mt19937 random(15);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  const auto spring = [&](const Vec& a, const Vec& b) {
+    return SpringLaw{std::pow(10, uniform(1, 3)), (a - b).norm() * uniform(0.4, 1.6)};
+  };
+  int count = 0, falls = 0;
+  for (const int dimension : {1, 2, 3}) {
+    for (int drawn_in = 1; drawn_in <= dimension; ++drawn_in) {
+      for (int i = 0; i < 50; ++i, ++count) {
+        const bool is_polygon = i % 3 == 0 && drawn_in == 2, is_held = i % 2 == 0;
+        const int nodes = 3 + i % 9;
+        Network network{.dimension = dimension, .node_mass = Vec(nodes)};
+        Eigen::MatrixXd x = Eigen::MatrixXd::Zero(dimension, nodes);
+        for (int a = 0; a < nodes; ++a) {
+          network.node_mass[a] = std::pow(10, uniform(-1.5, 0.5));
+          for (int d = 0; d < drawn_in; ++d) x(d, a) = uniform(-3, 3);
+          const double angle = 2 * M_PI * a / (nodes - 1);
+          if (is_polygon && a > 0) x.col(a).head(2) << std::cos(angle), std::sin(angle);
+        }
+        if (is_polygon) x.col(0).setZero();
+        const SpringLaw spoke{100, uniform(0.3, 1.8)}, side{100, uniform(0.3, 1.8)};
+        for (int a = 0; a < nodes; ++a) {
+          for (int b = a + 1; b < nodes; ++b) {
+            if (is_polygon && (a == 0 || b == a + 1 || (a == 1 && b == nodes - 1))) {
+              network.links.push_back({a, b, a == 0 ? spoke : side});
+            } else if (!is_polygon && (b == a + 1 || uniform(0, 1) < 0.6)) {
+              network.links.push_back({a, b, spring(x.col(a), x.col(b))});
+            }
+          }
+        }
+        for (int a = 0; is_held && !is_polygon && a < nodes; a += 3) {
+          Vec pin = Vec::Zero(dimension);
+          for (int d = 0; d < drawn_in; ++d) pin[d] = uniform(-3, 3);
+          network.anchors.push_back({a, in_space(pin), spring(x.col(a), pin)});
+        }
+        const auto system = make_mass_spring(network);
+        const Vec start = x.reshaped();
+        const Equilibrium e = find_equilibrium(*system, start, 6);
+        BOOST_TEST_CONTEXT(dimension << "D, drawn in " << drawn_in << ", number " << i) {
+          BOOST_TEST((e.outcome == Outcome::reached), e.message);
+          const Eigen::MatrixXd k = dense(stiffness_at(*system, e.q));
+          // A force of 8 eps of the row sum times 6 m, the rounding of q, on springs of 1 cm and
+          // more is a curvature of 1e-12 of the row sum.
+          BOOST_TEST(smallest_eigenvalue(-k) >= -1e-11 * k.cwiseAbs().rowwise().sum().maxCoeff());
+          BOOST_TEST(system->potential(e.q) <= system->potential(start));
+          const Eigen::MatrixXd moved = (e.q - start).reshaped(dimension, nodes);
+          falls += moved.bottomRows(dimension - drawn_in).norm() > 1e-3;
+        }
+      }
+    }
+  }
+  BOOST_TEST(count == 300);
+  BOOST_TEST(falls > 50);  // out of the line or plane: their saddles were left
+}
+
 // A block pushed to 0.4 of its size falls into one of many minima. Steps are bounded in length, and
 // the bound has to turn with the block, or some blocks fall into another minimum.
 BOOST_AUTO_TEST_CASE(rest_does_not_depend_on_directions_and_numbers) {

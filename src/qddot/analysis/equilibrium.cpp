@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
@@ -20,6 +21,8 @@ constexpr int most_shifts = 60;
 constexpr double far_away = 1e6;       // lengths
 constexpr double first_radius = 0.1;   // lengths
 constexpr double least_shift = 1e-12;  // of the bound of M'^-1 K
+constexpr double little = 1e-8;        // beside what a negative curvature promises
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 const char* const falls_for_ever =
     "there is no equilibrium: a part that nothing holds falls for ever";
@@ -43,16 +46,17 @@ class Descent {
       if (!k_.coeffs().allFinite() || !f_.allFinite())
         return end(Outcome::not_converged, overflows);
       if (largest(q_ - start_) > far_away * length_) return end(Outcome::unbounded, falls_for_ever);
-      if (!is_stationary()) {
-        if (!step()) return end(Outcome::not_converged, stuck);
-        continue;
-      }
-      if (curvature_signs(system_, q_).negative == 0) {
+      const bool looks = nears_saddle(), rests = is_stationary();
+      if (!looks && !rests && step()) continue;
+      if (curvature_signs(system_, q_).negative > 0) {
+        curvature_ = smallest_curvature(system_, q_);
+        if (leave_saddle()) continue;
+      } else if (rests) {
         polish();
         return end(Outcome::reached, "");
       }
-      curvature_ = smallest_curvature(system_, q_);
-      if (!leave_saddle()) return end(Outcome::not_converged, stuck);
+      next_look_ = 2 * iterations_;
+      if (!(looks || rests) || !step()) return end(Outcome::not_converged, stuck);
     }
     return end(Outcome::not_converged, too_long);
   }
@@ -68,6 +72,14 @@ class Descent {
   }
 
   bool is_stationary() const { return largest(f_) <= 8 * machine_epsilon * row_sum_ * reach_; }
+
+  // Whether the last step lowered V by little beside what the shift promises, which outweighs a
+  // negative curvature. Such a descent leads to a saddle, ever more slowly.
+  bool nears_saddle() const {
+    if (iterations_ < next_look_ || !(shift_ > 4 * least())) return false;
+    const double distance = first_radius * length_;
+    return fall_ < little * 0.5 * shift_ * metric_.sum() * distance * distance;
+  }
 
   // The root mean square [m] of a displacement by the metric; it does not change if the scene is
   // rotated.
@@ -98,27 +110,36 @@ class Descent {
   // One step downhill; false if none is found.
   bool step() {
     ++iterations_;
-    double shift = shift_ > 4 * least() ? shift_ / 4 : 0;
-    for (int attempts = 0; attempts < most_shifts; ++attempts) {
-      if (!direction(shift)) return false;
+    const double shift = shift_ > 4 * least() ? shift_ / 4 : 0;
+    return descend(shift, /*by_slope=*/false) || descend(shift, /*by_slope=*/true);
+  }
+
+  // The same with `shift` or a larger one, which makes shorter steps. From the bound of M'^-1 K on
+  // they are those of steepest descent.
+  bool descend(double shift, bool by_slope) {
+    const double before = v_;
+    for (; direction(shift); shift = std::max(least(), 16 * shift_)) {
       const double full = size(p_), length = std::min(full, radius_);
       p_ *= length / full;
-      if (const double alpha = search(); alpha > 0) {
+      if (const double alpha = search(by_slope); alpha > 0) {
         const bool may_grow = alpha == 1 && length < full;
         radius_ = may_grow ? 2 * radius_ : std::max(2 * alpha * length, machine_epsilon * length_);
         before_ = p_;
+        fall_ = before - v_;
         if (alpha < 1) before_.setZero();
         return true;
       }
       before_.setZero();
-      shift = std::max(least(), 16 * shift_);
+      if (shift_ > least() / least_shift) break;
     }
     return false;
   }
 
   // Moves along p_ by the first of 1, 1/2, 1/4, ... that leads to an acceptable place, and returns
-  // it; 0 if none does.
-  double search() {
+  // it; 0 if none does. A place is acceptable if V has fallen, by more than its rounding. Where
+  // rounding hides that, |f| must have fallen. `by_slope`: or V must not yet rise along p as fast
+  // as it fell (Hager, Zhang, SIAM J. Optim. 16 (2005) 170-192, approximate Wolfe conditions).
+  double search(bool by_slope) {
     const double slope = f_.dot(p_);
     const double noise = machine_epsilon * (std::abs(v_) + row_sum_ * reach_ * reach_);  // of V
     double alpha = 1;
@@ -127,8 +148,10 @@ class Descent {
       const double v = system_.potential(trial_);
       system_.force(trial_, trial_f_);
       if (!std::isfinite(v) || !trial_f_.allFinite()) continue;
-      const bool falls = v < v_ && v <= v_ - 1e-4 * alpha * slope;
-      if (falls || (v <= v_ + noise && trial_f_.norm() <= 0.9 * f_.norm())) {
+      const bool falls = v <= v_ - std::max(noise, 1e-4 * alpha * slope);
+      const bool relaxes =
+          by_slope ? trial_f_.dot(p_) >= -0.8 * slope : trial_f_.norm() <= 0.9 * f_.norm();
+      if (falls || (v <= v_ + noise && relaxes)) {
         move_to(trial_);
         return alpha;
       }
@@ -149,6 +172,8 @@ class Descent {
       move_to(q_ + (ahead <= behind ? s : -s) * direction);
       radius_ = first_radius * length_;
       before_.setZero();
+      shift_ = 0;
+      fall_ = infinite;
       return true;
     }
     return false;
@@ -192,8 +217,9 @@ class Descent {
   double v_ = 0, row_sum_ = 0, reach_ = 0;
   Curvature curvature_;
   Vec p_{system_.size()}, before_{Vec::Zero(system_.size())}, trial_, trial_f_{system_.size()};
-  double shift_ = 0;  // a [1/s^2]
-  int iterations_ = 0;
+  double shift_ = 0;        // a [1/s^2]
+  double fall_ = infinite;  // of V by the last step [J]
+  int iterations_ = 0, next_look_ = 0;
 };
 
 }  // namespace

@@ -38,9 +38,11 @@ constexpr const char* name(Equilibrium::Outcome outcome) {
 // definite, and d is the last step or zero. They are steps of implicit Euler of length a^-1/2 that
 // keep the velocity while they lead downhill, and Newton's if a = 0. (Dynamic relaxation: Barnes,
 // Form finding and analysis of tension structures by dynamic relaxation, 1999.) A step is cut to a
-// trust radius and halved until V falls (Armijo) or, if V's rounding hides that, |f|. A stationary
-// point where -K has an eigenvalue that is negative beyond rounding is no minimum. It is left along
-// an eigenvector, to the side where V is lower.
+// trust radius and halved until V falls (Armijo). If V's rounding hides that, |f| must fall or, if
+// it cannot, V must not yet rise along p. A stationary point where -K has an eigenvalue that is
+// negative beyond rounding is no minimum. It is left along an eigenvector, to the side where V is
+// lower. So is a place where -K has one and steps hardly lower V any more: in exact symmetry they
+// would lead to a saddle.
 //
 // Reached: |f_i| <= 8 eps max_i sum_j |K_ij| max(|q|, length), the effect of rounding q; Newton's
 // steps then reduce it as far as they can. Unbounded: 1e6 lengths away and still falling. Not
