@@ -11,88 +11,107 @@
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 #include "qddot/model/mass_spring.hpp"
 
 namespace qddot::inline measure {
 namespace {
 
 using Complex = std::complex<double>;
-using Eigen::Matrix4d;
 
 // The relative error that rounding may leave in the responses of an oscillator.
 constexpr double root_rounding = 1e-11;
+constexpr double start_rounding = 64 * machine_epsilon;
 
-// The roots of a 2 x 2 matrix. Near a double root, t +- sqrt(t^2 - d) keeps digits that an
-// iteration loses.
+// The roots of a 2 x 2 matrix. Near a double root, t +- sqrt(s) keeps digits that an iteration
+// loses, and s by the entries off the diagonal keeps more than t^2 - d.
 std::vector<Complex> pair_of_roots(const Eigen::Matrix2d& a) {
-  const double t = (a(0, 0) + a(1, 1)) / 2, d = a.determinant();
-  const double discriminant = t * t - d;
+  const double t = (a(0, 0) + a(1, 1)) / 2, half = (a(0, 0) - a(1, 1)) / 2;
+  const double discriminant = half * half + a(0, 1) * a(1, 0);
   if (discriminant < 0) {
     const double imaginary = std::sqrt(-discriminant);
     return {{t, imaginary}, {t, -imaginary}};
   }
   const double larger = t + std::copysign(std::sqrt(discriminant), t);
-  return {larger, larger == 0 ? 0 : d / larger};
+  return {larger, larger == 0 ? 0 : a.determinant() / larger};
 }
 
-bool is_close(const Eigen::Matrix2d& y, const Eigen::Matrix2d& expected, double noise) {
-  return (y - expected).norm() <= noise * std::max(1.0, y.norm());
+// Each start has its own response. A step leaves rounding of what it began with, and some of the
+// start's own unit.
+bool is_close(const Eigen::Matrix2d& y, const Eigen::Matrix2d& expected,
+              const Eigen::Matrix2d& before, double noise) {
+  const auto size = y.colwise().norm().cwiseMax(before.colwise().norm());
+  return ((y - expected).colwise().norm().array() <= noise * size.array() + start_rounding).all();
 }
+
+// The matrix of a step without memory.
+Eigen::Matrix2d step_without_memory(const Responses& y) { return y[1] * y[0].inverse(); }
 
 bool is_without_memory(const Responses& y, double noise) {
-  Eigen::Matrix2d power = y[1];
+  const Eigen::Matrix2d step = step_without_memory(y);
+  Eigen::Matrix2d expected = y[1];
   for (std::size_t n = 2; n < y.size(); ++n) {
-    power *= y[1];
-    if (!is_close(y[n], power, noise)) return false;
+    expected = step * expected;
+    if (!is_close(y[n], expected, y[n - 1], noise)) return false;
   }
   return true;
 }
 
-// The roots of A with `rank` rows, and whether A explains all responses.
-struct Realization {
-  std::vector<Complex> roots{};
-  bool explains = true;
-};
-Realization realize(const Responses& y, int rank, double noise) {
-  Matrix4d now, next;
-  now << y[0], y[1], y[1], y[2];
-  next << y[1], y[2], y[2], y[3];
-  const Eigen::JacobiSVD<Matrix4d, Eigen::NoQRPreconditioner> svd(
-      now, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // Rows and columns beyond the rank stay zero.
-  Eigen::Vector4d root = Eigen::Vector4d::Zero(), inverse = root;
-  root.head(rank) = svd.singularValues().head(rank).cwiseSqrt();
-  inverse.head(rank) = root.head(rank).cwiseInverse();
-  const Matrix4d observes = svd.matrixU() * root.asDiagonal();
-  const Matrix4d a = inverse.asDiagonal() *
-                     (svd.matrixU().transpose() * (next * svd.matrixV())).eval() *
-                     inverse.asDiagonal();
-  Realization result;
-  Eigen::Matrix<double, 4, 2> state = (svd.matrixV() * root.asDiagonal()).transpose().leftCols<2>();
-  for (std::size_t n = 0; n < y.size(); ++n, state = a * state) {
-    result.explains = result.explains && is_close(y[n], observes.topRows<2>() * state, noise);
+// The roots of the A that has a row for each singular value above the noise.
+std::vector<Complex> realized_roots(const Responses& y, double noise) {
+  constexpr int blocks = (steps_observed + 1) / 2, size = 2 * blocks;
+  using Hankel = Eigen::Matrix<double, size, size>;
+  Hankel now, next;
+  for (int i = 0; i < blocks; ++i) {
+    for (int j = 0; j < blocks; ++j) {
+      const auto n = static_cast<std::size_t>(i + j);
+      now.block<2, 2>(2 * i, 2 * j) = y[n];
+      next.block<2, 2>(2 * i, 2 * j) = y[n + 1];
+    }
   }
-  const Eigen::VectorXcd roots = general_values(a.topLeftCorner(rank, rank));
-  result.roots.assign(roots.begin(), roots.end());
-  return result;
+  const Eigen::JacobiSVD<Hankel, Eigen::NoQRPreconditioner> svd(
+      now, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const auto& values = svd.singularValues();
+  const auto rank = std::max<Index>(1, (values.array() > noise * values[0]).count());
+  const Vec inverse = values.head(rank).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd a =
+      inverse.asDiagonal() *
+      (svd.matrixU().leftCols(rank).transpose() * (next * svd.matrixV().leftCols(rank))) *
+      inverse.asDiagonal();
+  const Eigen::VectorXcd roots = general_values(a);
+  return {roots.begin(), roots.end()};
 }
 
-std::vector<Complex> found_roots(const Responses& y, double noise) {
-  if (y.size() > 1 && is_without_memory(y, noise)) return pair_of_roots(y[1]);
+// The largest power of two up to `size`: a unit that changes no digit.
+double unit(double size) { return std::exp2(std::floor(std::log2(size))); }
+
+std::vector<Complex> found_roots(Responses y, double noise) {
+  if (y.size() > 1 && is_without_memory(y, noise)) return pair_of_roots(step_without_memory(y));
   if (y.size() <= steps_observed) return {std::numeric_limits<double>::infinity()};
-  const Realization three = realize(y, 3, noise);
-  return three.explains ? three.roots : realize(y, 4, noise).roots;
+  // Of a vibration that dies or grows at once, the responses to all steps shall count.
+  const double change = std::pow(y.back().norm() / y.front().norm(), 1.0 / steps_observed);
+  const double factor = std::isnormal(change) ? unit(change) : 1;
+  for (std::size_t n = 0; n < y.size(); ++n) y[n] *= std::pow(factor, -static_cast<double>(n));
+  std::vector<Complex> roots = realized_roots(y, noise);
+  for (Complex& root : roots) root *= factor;
+  return roots;
 }
 
-// One mass and one spring of rest length zero with w = 1, on a line.
-std::unique_ptr<System> oscillator() {
+// One mass and one spring of rest length zero with w = 1, on a line. `quartic` [N/m^3] of its law.
+std::unique_ptr<System> oscillator(double quartic) {
   Network network{.dimension = 1, .node_mass = Vec::Ones(1)};
-  network.anchors = {{0, Eigen::Vector3d::Zero(), {.stiffness = 1}}};
+  network.anchors = {{0, Eigen::Vector3d::Zero(), {.stiffness = 1, .quartic = quartic}}};
   return make_mass_spring(network);
 }
 
-Responses respond(const Method& method, const Options& options) {
-  const auto system = oscillator();
+// In one correction, Newton's method leaves the rounding of its prediction, up to (h w)^2 times the
+// solution. It takes more if the law is not linear by its form. This quartic part is none.
+constexpr double nominal_quartic = 1e-307, finest_solve = 1e-16;
+
+Responses respond(const Method& method, Options options) {
+  const bool refines = method.listens_to(Option::solve_tolerance) && options.solve_tolerance == 0;
+  if (refines) options.solve_tolerance = finest_solve;
+  const auto system = oscillator(refines ? nominal_quartic : 0);
   const auto integrator = make_integrator(method, *system, options);
   Responses y(steps_observed + 1, Eigen::Matrix2d::Identity());
   for (const int start : {0, 1}) {
@@ -109,6 +128,15 @@ Responses respond(const Method& method, const Options& options) {
                                            options.step_size, summary.message));
     }
   }
+  return y;
+}
+
+// The responses in units of a step, in which stiff methods have no large numbers. A velocity is a
+// displacement h v. A start at q has h^2 a = -(h w)^2 q, and that at v has h v.
+Responses in_units_of_a_step(Responses y, double h) {
+  const double stiff = unit(std::max(1.0, h));
+  const Eigen::Vector2d of_state(1, stiff), of_start(1 / (stiff * stiff), 1 / stiff);
+  for (Eigen::Matrix2d& each : y) each = of_state.asDiagonal() * each * of_start.asDiagonal();
   return y;
 }
 
@@ -137,7 +165,7 @@ LinearStep linear_step(const Method& method, double h_omega, Options options) {
   }
   if (method.recurrence_roots) return {h_omega, method.recurrence_roots(h_omega)};
   options.step_size = h_omega;  // w = 1
-  return {h_omega, roots_of(respond(method, options), root_rounding)};
+  return {h_omega, roots_of(in_units_of_a_step(respond(method, options), h_omega), root_rounding)};
 }
 
 }  // namespace qddot::inline measure

@@ -31,15 +31,17 @@ inline bool has_linear_step(const Method& method) {
 }
 
 // The responses Y_0 = I, Y_1, Y_2, ... after each step: 2 x 2 matrices whose columns are the states
-// from the two starts (1, 0) and (0, 1).
+// from the two starts (1, 0) and (0, 1), or these in other units.
 using Responses = std::vector<Eigen::Matrix2d>;
-constexpr int steps_observed = 5;
+constexpr int steps_observed = 7;
 
-// The roots of the smallest linear recurrence that gives Y_0 ... Y_5. It is Y_n = Y_1^n for a
-// method without memory, else Y_n = C A^n B. A follows from the matrices of Y_(i+j) and Y_(i+j+1)
-// (Ho and Kalman, Regelungstechnik 14 (1966) 545-548), with a row for each number that the method
-// remembers, up to 4. `noise`: relative error of the responses. If there are fewer responses, steps
-// have overflowed. Then Y_1 alone decides; without Y_1, or with memory, the one root is infinite.
+// The roots of the smallest linear recurrence that gives Y_0 ... Y_7. It is Y_n = (Y_1 Y_0^-1)^n
+// Y_0 for a method without memory, else Y_n = C A^n B. A follows from the matrices of Y_(i+j) and
+// Y_(i+j+1) (Ho and Kalman, Regelungstechnik 14 (1966) 545-548), with a row for each number that
+// the method remembers. `noise`: relative error of the responses to a start, and of A.
+// k equal roots move by its k-th root. Rows and columns of Y may have any units, in which their
+// rounding is some 1e-16. If there are fewer responses, steps have overflowed. Then Y_1 alone
+// decides; without Y_1, or with memory, the one root is infinite.
 std::vector<std::complex<double>> roots_of(const Responses& y, double noise);
 
 // The method's step at that h w: given by the method itself (Method::recurrence_roots), or found by
