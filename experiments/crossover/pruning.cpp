@@ -11,22 +11,30 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-bool reaches(const Point& point, double accuracy) {
-  return point.outcome == Outcome::reached_end && point.errors.position <= accuracy;
+// Calls each(point, its judgement) for the points that have a time.
+template <class Each>
+void for_timed(const std::vector<Point>& points, const Reference& reference, const Each& each) {
+  const auto judged = judged_together(points, reference, Quantity::position);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].outcome == Outcome::reached_end) each(points[i], judged[i]);
+  }
 }
 
 }  // namespace
 
 Pruning::Pruning(const Reference& reference)
-    : count_(static_cast<std::size_t>(std::ranges::count_if(
+    : reference_(reference),
+      count_(static_cast<std::size_t>(std::ranges::count_if(
           accuracies, [&](double a) { return reference.certified.position <= a; }))) {
   fastest_.fill(never);
 }
 
-void Pruning::take(const Point& point) {
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (reaches(point, accuracies[i])) fastest_[i] = std::min(fastest_[i], point.time);
-  }
+void Pruning::take(const std::vector<Point>& points) {
+  for_timed(points, reference_, [&](const Point& point, const Judged& judged) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (judged.is_within(accuracies[i])) fastest_[i] = std::min(fastest_[i], point.time);
+    }
+  });
 }
 
 bool Pruning::is_over(const Point& point) const {
@@ -34,7 +42,7 @@ bool Pruning::is_over(const Point& point) const {
   // ones.
   if (!(point.errors.position < 1)) return false;
   for (std::size_t i = 0; i < count_; ++i) {
-    if (reaches(point, accuracies[i])) continue;
+    if (point.errors.position <= accuracies[i]) continue;
     const double slower =
         std::pow(point.errors.position / accuracies[i], 1.0 / std::max(point.method->order, 1));
     if (!(point.time * slower > too_slow * fastest_[i])) return false;
@@ -48,11 +56,11 @@ double Pruning::seconds_of_interest() const {
 
 double Pruning::handicap(const std::vector<Point>& points) const {
   double least = never;
-  for (const Point& point : points) {
+  for_timed(points, reference_, [&](const Point& point, const Judged& judged) {
     for (std::size_t i = 0; i < count_; ++i) {
-      if (reaches(point, accuracies[i])) least = std::min(least, point.time / fastest_[i]);
+      if (judged.is_within(accuracies[i])) least = std::min(least, point.time / fastest_[i]);
     }
-  }
+  });
   return least;
 }
 
@@ -62,9 +70,9 @@ std::vector<Placing> placings(const std::vector<Point>& points, const Reference&
     Placing placing{.accuracy = accuracy};
     std::vector<const Point*> counted;
     if (reference.certified.position <= accuracy) {
-      for (const Point& point : points) {
-        if (reaches(point, accuracy)) counted.push_back(&point);
-      }
+      for_timed(points, reference, [&](const Point& point, const Judged& judged) {
+        if (judged.is_within(accuracy)) counted.push_back(&point);
+      });
     }
     for (const Point* point : counted) {
       keep_faster(placing.fastest, *point);

@@ -34,7 +34,8 @@ struct Placing {
 
 // Tells which runs need not be made where methods compete on one scene for the accuracies 1e-1,
 // 1e-2, ... 1e-6, as far as the reference is certain. Methods take their points from coarse to
-// fine.
+// fine. A point has reached an accuracy if it counts as within it (see judged_together). Borrows
+// the reference.
 class Pruning {
  public:
   static constexpr std::array accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
@@ -43,7 +44,8 @@ class Pruning {
 
   explicit Pruning(const Reference& reference);
 
-  void take(const Point& point);
+  // Takes the points of a method.
+  void take(const std::vector<Point>& points);
   // Whether finer points of the method than this one are of no interest. It has then reached the
   // finest accuracy, or would be too slow at each remaining one. Its time is taken to grow by its
   // order, time ~ error^(-1/order).
@@ -56,6 +58,7 @@ class Pruning {
   double handicap(const std::vector<Point>& points) const;
 
  private:
+  const Reference& reference_;
   std::size_t count_;  // how many of the accuracies are certain
   std::array<double, accuracies.size()> fastest_;
 };

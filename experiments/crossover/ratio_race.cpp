@@ -76,12 +76,10 @@ void RatioRace::measure_all(Study& study, const AtRatio& one, Pruning& pruning,
     std::vector<Point>& own = points[method];
     measure_ladder(
         *method, one.subject.reduced, one.subject.until, *one.reference, effort,
-        [&](const Point& point) {
-          pruning.take(point);
-          own.push_back(point);
-        },
+        [&](const Point& point) { own.push_back(point); },
         [&](const Point& point) { return pruning.is_over(point); });
     std::ranges::sort(own, std::ranges::greater(), &Point::value);
+    pruning.take(own);
     progress().finish(fmt::format("ratio {:g}: {} is done", one.ratio, method->name));
   }
 }

@@ -84,6 +84,11 @@ class Chart:
             words = "bars: error ± error bound of the reference"
             style = {"size": 9.5, "color": FAINT, "ha": "right", "va": "center"}
             self.note(words, 1, (0, BELOW_TICKS), **style)
+        if any(run.is_lucky for run in self.good):
+            words = "× small by luck: counts as a finer run does"
+            place = {"xy": (1, 1), "xytext": (-6, -6), "xycoords": "axes fraction"}
+            style = {"size": 9.5, "color": FAINT, "ha": "right", "va": "top"}
+            self.axes.annotate(words, textcoords="offset points", **place, **style)
         self.draw_chaos()
         self.draw_front()
         for sweep in self.sweeps:
@@ -141,8 +146,8 @@ class Chart:
         """The staircase of the shortest time that reaches each error or a smaller one."""
         corners = []
         for run in reversed(self.view.staircase):
-            # An error is known to be reached if it is at least the run's upper bound.
-            error = max(run.at_most, self.smallest)
+            # An error is known to be reached if the run counts at it or at a smaller one.
+            error = max(run.counts_at, self.smallest)
             corners += [(error, corners[-1][1])] if corners else []
             corners.append((error, run.time))
         return corners + [(self.axes.get_xlim()[1], corners[-1][1])] if corners else []
@@ -177,6 +182,9 @@ class Chart:
         for before, after in zip(pieces, pieces[1:]):
             self.axes.plot(*zip(before[-1], after[0]), linewidth=0.6, zorder=2, **style)
         self.draw_doubts(sweep, style)
+        lucky = [self.position(run) for run in sweep if run.is_lucky and not run.failure]
+        if lucky:
+            self.axes.plot(*zip(*lucky), linestyle="", marker="x", markersize=11, **style)
 
     def draw_doubts(self, sweep, style):
         """Draws the range of a run's error, from its lower to its upper bound, if these are

@@ -17,7 +17,7 @@ def best(view, runs):
     if fastest:
         return max(fastest, key=fastest.count)
     good = [run for run in runs if not run.failure]
-    return min(good, key=lambda run: run.at_most).method if good else None
+    return min(good, key=lambda run: run.counts_at).method if good else None
 
 
 def kinds(runs):

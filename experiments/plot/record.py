@@ -55,8 +55,9 @@ class Run:
     """One method at one value of its knob, with one of its errors; error and time are NaN where they
     were not measured.
 
-    knob_words: the knob with its value; solves: how many linear systems it solved; failure: why it
-    is no point of the picture, empty for a good run.
+    knob_words: the knob with its value; solves: how many linear systems it solved; counts_at: the
+    error at which the run counts, which is a finer run's where its own is small by luck; failure:
+    why it is no point of the picture, empty for a good run.
     """
 
     scene: str
@@ -72,6 +73,8 @@ class Run:
     error: float
     at_least: float
     at_most: float
+    counts_at: float
+    is_lucky: bool
     counts: bool
     is_uncertain: bool
     failure: str
@@ -182,9 +185,12 @@ def view_of(chart, entry, facts):
     """The view of one of the entries of chart.json's quantities."""
     quantity = QUANTITIES[entry["name"]]
     is_judge = entry["name"] == chart["judged_by"]
+    # Without these columns, as of before there were any, each run counts at its own error.
+    entry = {"counts_at": entry["at_most"], "is_lucky": [False] * len(facts)} | entry
     errors = (map(known, entry[name]) for name in ("errors", "at_least", "at_most"))
-    words = (entry[name] for name in ("counts", "is_uncertain", "failures"))
-    lists = zip(facts, chart["knobs"], *errors, *words, strict=True)
+    counts_at = [math.inf if error is None else error for error in entry["counts_at"]]
+    words = (entry[name] for name in ("is_lucky", "counts", "is_uncertain", "failures"))
+    lists = zip(facts, chart["knobs"], *errors, counts_at, *words, strict=True)
     runs = [Run(*own, *judged) for own, *judged in lists]
     fastest = [
         FrontPoint(row["accuracy"], runs[row["point"]].method, runs[row["point"]].time)

@@ -101,6 +101,8 @@ std::string json(const Chart& chart, const ChartView& view) {
   "errors": {},
   "at_least": {},
   "at_most": {},
+  "counts_at": {},
+  "is_lucky": {},
   "counts": {},
   "is_uncertain": {},
   "failures": {}}})",
@@ -117,6 +119,8 @@ std::string json(const Chart& chart, const ChartView& view) {
       list(view.staircase), of_each([](const Point&, const Judged& j) { return j.error; }),
       of_each([](const Point&, const Judged& j) { return j.bounds.at_least; }),
       of_each([](const Point&, const Judged& j) { return j.bounds.at_most; }),
+      of_each([](const Point&, const Judged& j) { return j.counts_at; }),
+      of_each([](const Point&, const Judged& j) { return j.is_lucky; }),
       of_each([](const Point&, const Judged& j) { return j.counts; }),
       of_each([](const Point&, const Judged& j) { return j.is_uncertain; }),
       of_each([](const Point& p, const Judged& j) { return failure_in_words(p, j); }));

@@ -1,6 +1,7 @@
 """The points of a study as the page has them: one list a column, and the errors that a chart may
 stand over."""
 
+import math
 import os
 
 from commands import RunCommands
@@ -73,6 +74,11 @@ def points_part(study):
 def quantity_entry(name, view):
     """One entry of the page's `quantities`."""
     counts = [run.counts for run in view.runs]
+    lucky = {
+        index: run.counts_at if math.isfinite(run.counts_at) else None
+        for index, run in enumerate(view.runs)
+        if run.is_lucky
+    }
     return {
         "column": view.column,
         "name": NAMES[name],
@@ -81,6 +87,7 @@ def quantity_entry(name, view):
         "floor": view.floor,
         "floor_words": view.floor_words or None,
         "counts": None if all(counts) else counts,
+        "lucky": lucky,
         "failures": [run.failure or None for run in view.runs],
     }
 

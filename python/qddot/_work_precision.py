@@ -131,11 +131,11 @@ class WorkPrecision:
         """The fastest point that is known to reach the accuracy; None if there is none."""
         judge = self.record["judged_by"]
         [view] = [view for view in self.record["quantities"] if view["name"] == judge]
-        columns = zip(view["counts"], view["at_most"], self.record["times"])
+        columns = zip(view["counts"], view["counts_at"], self.record["times"])
         good = [
             i
-            for i, (counts, at_most, time) in enumerate(columns)
-            if counts and at_most is not None and at_most <= accuracy and time
+            for i, (counts, error, time) in enumerate(columns)
+            if counts and error is not None and error <= accuracy and time
         ]
         if not good:
             return None

@@ -172,6 +172,69 @@ BOOST_AUTO_TEST_CASE(no_point_beats_one_of_the_staircase) {
   BOOST_TEST(chart.sundials == others, boost::test_tools::per_element());
 }
 
+// verlet (order 2, steps halved) whose error is small by chance at the second step.
+BOOST_AUTO_TEST_CASE(a_lucky_run_counts_at_the_largest_error_up_to_where_the_order_shows) {
+  const double c = 1e-12;
+  const std::vector<Point> points = {
+      point("verlet", 0.9, 1, 1.6),   point("verlet", 1e-4, 2, 0.8),
+      point("verlet", 0.6, 4, 0.4),   point("verlet", 0.16, 8, 0.2),
+      point("verlet", 0.04, 16, 0.1), point("verlet", 0.01, 32, 0.05),
+      point("verlet", 0.3, 64, 0.025)};  // rounding, say: beyond what shows the order
+  const Chart chart = made(points);
+  const std::vector<double> expected = {0.9, 0.6, 0.6, 0.16, 0.04, 0.01, 0.3};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Judged& judged = chart.views[0].points[i];
+    BOOST_TEST(judged.counts_at == expected[i] + c, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(judged.bounds.at_most == points[i].errors.position + c);
+    BOOST_TEST(judged.is_lucky == (i == 1), i);
+  }
+  BOOST_TEST(ranked(chart, 0) == Numbers{4}, boost::test_tools::per_element());
+  BOOST_TEST(!chart.front[1].fastest);
+  // The order of the points does not matter, and they may be mixed with those of other methods.
+  std::vector<Point> mixed(points.rbegin(), points.rend());
+  mixed.insert(mixed.begin() + 3, point("rk4", 1e-2, 99));
+  const Chart other = made(mixed);
+  BOOST_TEST(other.views[0].points[6].counts_at == chart.views[0].points[1].counts_at);
+  BOOST_TEST(ranked(other, 0) == (Numbers{2, 3}), boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(a_tolerance_counts_at_the_errors_of_tighter_ones) {
+  // Errors fall as tolerances do, from 1e-3 on.
+  const std::vector<Point> points = {point("ida", 2e-5, 1, 1e-1), point("ida", 0.3, 2, 1e-2),
+                                     point("ida", 0.05, 3, 1e-3), point("ida", 7e-3, 4, 1e-4),
+                                     point("ida", 2e-3, 5, 1e-5), point("ida", 9e-3, 6, 1e-6)};
+  const Chart chart = made(points);
+  BOOST_TEST(chart.views[0].points[0].counts_at == 0.3 + 1e-12);
+  BOOST_TEST(chart.views[0].points[2].counts_at == 0.05 + 1e-12);
+  BOOST_TEST(chart.front[0].fastest == &points[2]);
+  BOOST_TEST(!chart.front[1].fastest);
+}
+
+BOOST_AUTO_TEST_CASE(
+    a_run_before_a_diverged_one_counts_for_nothing_and_one_over_budget_tells_nothing) {
+  std::vector<Point> points = {point("verlet", 0.02, 1, 0.4), failed(Outcome::diverged),
+                               point("verlet", 0.01, 3, 0.1)};
+  points[1].value = 0.2;
+  const Chart chart = made(points);
+  BOOST_TEST(std::isinf(chart.views[0].points[0].counts_at));
+  BOOST_TEST(chart.views[0].points[0].is_lucky);
+  BOOST_TEST(ranked(chart, 0) == Numbers{2}, boost::test_tools::per_element());
+  BOOST_TEST(chart.judged_view().staircase == Numbers{2}, boost::test_tools::per_element());
+  points[1].outcome = Outcome::over_budget;
+  BOOST_TEST(ranked(made(points), 0) == Numbers{0}, boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(a_last_run_far_below_the_one_before_may_be_lucky) {
+  const auto may_be = [](double coarse, double fine) {
+    return may_be_lucky({point("verlet", coarse, 1, 0.2), point("verlet", fine, 2, 0.1)},
+                        reference());
+  };
+  BOOST_TEST(!may_be(0.1, 0.1 / 15));
+  BOOST_TEST(may_be(0.1, 0.1 / 17));  // 2^2 is expected, 4^2 at most
+  BOOST_TEST(!may_be(1e-12, 0));      // the reference's own error
+  BOOST_TEST(!may_be_lucky({point("verlet", 0, 1)}, reference()));
+}
+
 BOOST_AUTO_TEST_CASE(another_motion_counts_nowhere) {
   const std::vector<Point> points = {by_energy("implicit_euler", 0, 0.11, 1),
                                      by_energy("verlet", 5e-4, 0.02, 2),

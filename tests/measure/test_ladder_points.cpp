@@ -153,6 +153,17 @@ BOOST_AUTO_TEST_CASE(it_goes_down_to_where_the_reference_or_rounding_ends_it) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_lucky_error_does_not_end_it) {
+  // The end's error passes through zero where h w is large.
+  const auto is_enough = [](const Point& point) { return point.errors.position < 0.1; };
+  for (const char* method : {"generalized_alpha", "hht", "implicit_midpoint"}) {
+    const auto points = Course("oscillator", 2).run(method, long_runs, is_enough);
+    const double last = points.back().errors.position;
+    BOOST_TEST(last < 0.1);
+    BOOST_TEST(points[points.size() - 2].errors.position <= 16 * last, method);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(it_does_not_go_below_what_the_reference_certifies) {
   Course course("orbit", 0.3);
   course.reference.certified.position = 1e-4;

@@ -28,6 +28,7 @@ def a_run(method="verlet", value=1e-3, error=1e-3, time=1.0, **others):
     facts = {"scene": "s", "family": "hand-written", "stock_of": "", "knob": "step_size"}
     facts |= {"method": method, "value": value, "time": time, "solves": 0, "knob_words": "h = 1 s"}
     facts |= {"error": error, "at_least": error, "at_most": error, "counts": True}
+    facts |= {"counts_at": error, "is_lucky": False}
     outcome = others.setdefault("outcome", "reached_end")
     failure = "" if outcome == "reached_end" else outcome.replace("_", " ")
     facts |= {"is_uncertain": False, "failure": failure.replace("newton", "Newton")}
@@ -81,9 +82,13 @@ class Records(unittest.TestCase):
         self.assertEqual((run.value, run.time, run.knob_words), (1e-4, 0.5, "rtol = 1e-4"))
         self.assertEqual((run.error, run.at_least, run.at_most), (2e-3, 1e-3, 3e-3))
         self.assertTrue(run.is_uncertain and run.counts and not run.failure)
+        self.assertEqual((run.counts_at, run.is_lucky), (3e-3, False))
         self.assertEqual(view.front, [FrontPoint(1e-2, "ida_klu", 0.5)])
         self.assertEqual((view.ranked, view.staircase), ({1e-2: [run], 1e-3: []}, [run]))
         self.assertTrue(view.subtitle.endswith(" in the node's own part, 0.5 to 2 m"))
+        self.position |= {"counts_at": [0.2], "is_lucky": [True]}
+        (run,) = self.read().judged.runs
+        self.assertEqual((run.at_most, run.counts_at, run.is_lucky), (3e-3, 0.2, True))
         self.position["errors"] = [None]  # one that is not known
         self.assertTrue(math.isnan(self.read().judged.runs[0].error))
 

@@ -12,8 +12,9 @@ using namespace qddot::crossover;
 
 namespace {
 
-Point point(const char* method, double error, double time) {
+Point point(const char* method, double error, double time, double value = 0) {
   return {.method = find_method(method),
+          .value = value,
           .outcome = Outcome::reached_end,
           .errors = {.position = error},
           .time = time};
@@ -41,8 +42,9 @@ BOOST_AUTO_TEST_CASE(kinds_are_read_from_the_registry) {
 }
 
 BOOST_AUTO_TEST_CASE(steps_above_a_stability_limit_do_not_end_the_race_of_a_method) {
-  Pruning pruning(certain_to(1e-9));
-  pruning.take(point("ida", 1e-7, 1));
+  const Reference reference = certain_to(1e-9);
+  Pruning pruning(reference);
+  pruning.take({point("ida", 1e-7, 1)});
   for (const double error : {2.0, 1e30, 1e300}) {
     BOOST_TEST(!pruning.is_over(point("linear_midpoint", error, 1e-3)));
   }
@@ -69,6 +71,23 @@ BOOST_AUTO_TEST_CASE(the_fastest_point_that_is_accurate_enough_wins) {
   BOOST_TEST(all[3].runner_up == nullptr);
 }
 
+BOOST_AUTO_TEST_CASE(a_lucky_run_wins_nothing_and_prunes_nothing) {
+  // verlet's error changes its sign at the coarsest step.
+  const std::vector<Point> lucky = {point("verlet", 1e-3, 1, 0.4), point("verlet", 0.5, 2, 0.2),
+                                    point("verlet", 0.1, 4, 0.1)};
+  std::vector<Point> points = lucky;
+  points.push_back(point("ida", 1e-3, 3));
+  const Reference reference = certain_to(1e-9);
+  const auto all = placings(points, reference);
+  BOOST_TEST(all[1].fastest == &points[3]);  // 1e-2
+  BOOST_TEST(all[1].runner_up == nullptr);
+  Pruning pruning(reference);
+  pruning.take(lucky);
+  pruning.take({points[3]});
+  BOOST_TEST(pruning.handicap({points[3]}) == 1);
+  BOOST_TEST(std::isinf(pruning.handicap(lucky)));
+}
+
 BOOST_AUTO_TEST_CASE(nothing_is_said_below_what_is_certified) {
   const std::vector<Point> points = {point("verlet", 1e-8, 1)};
   const auto all = placings(points, certain_to(2e-5));
@@ -77,11 +96,12 @@ BOOST_AUTO_TEST_CASE(nothing_is_said_below_what_is_certified) {
 }
 
 BOOST_AUTO_TEST_CASE(a_method_is_over_where_it_has_arrived_or_comes_too_late) {
-  Pruning pruning(certain_to(1e-9));
+  const Reference reference = certain_to(1e-9);
+  Pruning pruning(reference);
   // Nobody is known to be faster.
   BOOST_TEST(!pruning.is_over(point("verlet", 1e-3, 100)));
   BOOST_TEST(pruning.is_over(point("verlet", 1e-6, 100)));
-  pruning.take(point("ida", 1e-6, 1));
+  pruning.take({point("ida", 9e-7, 1)});
   BOOST_TEST(pruning.seconds_of_interest() == 20);
   // Order 2 from 1e-4 to 1e-6 takes ten times as long: 20 times the fastest is 2 s here.
   BOOST_TEST(!pruning.is_over(point("verlet", 1e-4, 1.9)));
@@ -93,15 +113,17 @@ BOOST_AUTO_TEST_CASE(a_method_is_over_where_it_has_arrived_or_comes_too_late) {
 }
 
 BOOST_AUTO_TEST_CASE(the_accuracies_that_are_not_certified_do_not_keep_a_method_going) {
-  Pruning pruning(certain_to(1e-5));
+  const Reference reference = certain_to(1e-5);
+  Pruning pruning(reference);
   BOOST_TEST(pruning.is_over(point("verlet", 1e-5, 1)));
   BOOST_TEST(!pruning.is_over(point("verlet", 2e-5, 1)));
 }
 
 BOOST_AUTO_TEST_CASE(the_handicap_is_that_where_a_method_is_best) {
-  Pruning pruning(certain_to(1e-9));
-  pruning.take(point("ida", 1e-3, 1));
-  pruning.take(point("ida", 1e-6, 4));
+  const Reference reference = certain_to(1e-9);
+  Pruning pruning(reference);
+  pruning.take({point("ida", 1e-3, 1)});
+  pruning.take({point("ida", 9e-7, 4)});
   BOOST_TEST(pruning.handicap({point("verlet", 1e-2, 5), point("verlet", 1e-5, 8)}) == 2);
   BOOST_TEST(std::isinf(pruning.handicap({point("verlet", 0.5, 1)})));
 }

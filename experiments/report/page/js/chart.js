@@ -34,18 +34,22 @@ function currentView() {
   const least = floor ?? (positive.length ? Math.min(...positive) : 1e-16);
   const x = (point) => Math.max(points[column][point], least);
   const y = (point) => points[ordinate][point];
+  // The error at which a run counts: that of a finer one, or none, where its own is small by luck.
+  const counted = (point) =>
+    point in quantity.lucky ? (quantity.lucky[point] ?? Infinity) : x(point);
   const xs = drawn.map(x);
   const shown = floor !== null && Math.min(...xs) < 1e3 * floor ? floor : null;
   const [left, right] = widened([shown === null ? Math.min(...xs) : shown / 2, ...xs], 2.5);
   const [bottom, top] = widened(drawn.map(y), 2);
-  return { quantity, column, ordinate, drawn, floor: shown, x, y, left, right, bottom, top };
+  const ends = { left, right, bottom, top };
+  return { quantity, column, ordinate, drawn, floor: shown, x, y, counted, ...ends };
 }
 
 // The runs on the front, from the least error to the largest.
-function frontOf({ quantity, drawn, x, y }) {
+function frontOf({ quantity, drawn, counted, y }) {
   const sorted = drawn
-    .filter((point) => quantity.counts?.[point] !== false)
-    .sort((a, b) => x(a) - x(b) || y(a) - y(b));
+    .filter((point) => quantity.counts?.[point] !== false && counted(point) < Infinity)
+    .sort((a, b) => counted(a) - counted(b) || y(a) - y(b));
   let least = Infinity;
   return sorted.filter((point) => {
     const isLess = y(point) < least;
@@ -59,7 +63,7 @@ const drawnRuns = (method) =>
 
 // The front as a staircase from the upper end of the axes to the right one.
 function frontTrace(front) {
-  const xs = front.map(view.x);
+  const xs = front.map(view.counted);
   const ys = front.map(view.y);
   return {
     x: front.length ? [xs[0], ...xs, view.right] : [],
@@ -106,7 +110,13 @@ function methodTrace(method) {
     mode: "lines+markers",
     hoverinfo: "none",
     line: lineOf(method),
-    marker: { symbol, size, color: fill, line: { color: edge, width: 1.2 }, opacity: 1 },
+    marker: {
+      symbol: runs.map((point) => (point in view.quantity.lucky ? "x-thin-open" : symbol)),
+      size,
+      color: fill,
+      line: { color: edge, width: 1.2 },
+      opacity: 1,
+    },
   };
 }
 

@@ -101,10 +101,18 @@ function openRange(point) {
   return `Its position error lies ${range}: the reference leaves that open.`;
 }
 
+// The error at which a run counts whose own is small by luck.
+function luck(point) {
+  const { lucky } = chosenQuantity();
+  if (!(point in lucky)) return null;
+  const counts = lucky[point] === null ? "not at all" : `at ${words.number(lucky[point])}`;
+  return `Its error is small by luck, as a finer run shows: it counts ${counts}.`;
+}
+
 function head(point) {
   const { name, line } = methods[points.method[point]];
   const warnings = report.answers.filter((answer) => answer.point === point && answer.warning);
-  const open = openRange(point);
+  const notes = [openRange(point), luck(point)].filter((note) => note);
   return element(
     "div",
     element(
@@ -117,7 +125,7 @@ function head(point) {
     points.cause[point] && element("p.bad", `${ending(point)}: ${points.cause[point]}`),
     element("ul.run-facts", facts(point)),
     [...new Set(warnings.map(({ warning }) => warning))].map((text) => element("p.warning", text)),
-    open && element("p.about", open),
+    notes.map((note) => element("p.about", note)),
     element("p.about", "This command repeats it:"),
     commandLine(points.command[point]),
   );

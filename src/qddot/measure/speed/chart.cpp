@@ -42,8 +42,9 @@ Staircase staircase(std::span<const Point> points, const ChartView& view, const 
   }
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_drawn(i) && view.points[i].counts && takes(points[i]))
-      order.emplace_back(std::max(view.points[i].bounds.at_most, least), i);
+    const Judged& judged = view.points[i];
+    if (is_drawn(i) && judged.counts && std::isfinite(judged.counts_at) && takes(points[i]))
+      order.emplace_back(std::max(judged.counts_at, least), i);
   }
   std::ranges::stable_sort(order, [&](const auto& one, const auto& other) {
     return std::pair(one.first, points[one.second].time) <
@@ -60,8 +61,8 @@ Staircase staircase(std::span<const Point> points, const ChartView& view, const 
 ChartView view_of(const std::vector<Point>& points, const Reference& reference, Quantity quantity) {
   ChartView view{.quantity = quantity,
                  .floor = floor_of(reference, quantity),
-                 .rounding_decides_below = rounding_decides_below(reference, quantity)};
-  for (const Point& point : points) view.points.push_back(judged(point, reference, quantity));
+                 .rounding_decides_below = rounding_decides_below(reference, quantity),
+                 .points = judged_together(points, reference, quantity)};
   view.front = fastest_at_each_accuracy(points, reference, usual_accuracies(), quantity);
   view.staircase = staircase(points, view, [](const Point&) { return true; });
   return view;

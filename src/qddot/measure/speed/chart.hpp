@@ -8,7 +8,8 @@
 namespace qddot::inline measure {
 
 // The points that no other point beats in both time and error, by their indices, from coarse to
-// fine. A point's error is its upper bound. Errors below the view's floor are not told apart.
+// fine. A point's error is that at which it counts. Errors below the view's floor are not told
+// apart.
 using Staircase = std::vector<std::size_t>;
 
 // The points of a chart over one kind of error.

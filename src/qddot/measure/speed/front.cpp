@@ -43,27 +43,18 @@ void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
 }
 
-const std::vector<double>& usual_accuracies() {
-  static const std::vector<double> all = [] {
-    std::vector<double> powers;
-    for (int digit = 1; digit <= 9; ++digit) powers.push_back(std::pow(10.0, -digit));
-    return powers;
-  }();
-  return all;
-}
-
 std::vector<FrontRow> fastest_at_each_accuracy(const std::vector<Point>& points,
                                                const Reference& reference,
                                                const std::vector<double>& accuracies,
                                                Quantity quantity) {
+  const std::vector<Judged> errors = judged_together(points, reference, quantity);
   std::vector<FrontRow> rows;
   for (const double accuracy : accuracies) {
     FrontRow row{.accuracy = accuracy};
-    for (const Point& point : points) {
-      if (!is_timed(point)) continue;
-      const Judged error = judged(point, reference, quantity);
-      row.may_be_reached |= error.may_be_within(accuracy);
-      if (error.is_within(accuracy)) enter(row.ranked, point);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!is_timed(points[i])) continue;
+      row.may_be_reached |= errors[i].may_be_within(accuracy);
+      if (errors[i].is_within(accuracy)) enter(row.ranked, points[i]);
     }
     std::ranges::sort(row.ranked, [](const Point* one, const Point* other) {
       return one->time != other->time ? one->time < other->time : one < other;

@@ -9,7 +9,8 @@
 namespace qddot::inline measure {
 
 // The fastest points at one accuracy, of all methods and of each family; nullptr if there is none.
-// A point has reached the accuracy if its error is known to be at most that (see judgement.hpp).
+// A point has reached the accuracy if the error at which it counts is at most that (see
+// judgement.hpp).
 // The first of equally fast points counts as the fastest.
 struct FrontRow {
   double accuracy = 0;
@@ -30,9 +31,6 @@ bool is_timed(const Point& point);
 
 // Replaces `fastest`, which may be nullptr, by `point` if `point` takes less time.
 void keep_faster(const Point*& fastest, const Point& point);
-
-// 1e-1, 1e-2, ... 1e-9.
-const std::vector<double>& usual_accuracies();
 
 // The front: one row for each accuracy, with pointers into `points`, by the quantity that decides.
 std::vector<FrontRow> fastest_at_each_accuracy(

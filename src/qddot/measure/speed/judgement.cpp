@@ -1,6 +1,7 @@
 #include "qddot/measure/speed/judgement.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "qddot/model/machine_epsilon.hpp"
 
@@ -15,6 +16,15 @@ double measured(const Point& point, Quantity quantity) {
 }
 
 }  // namespace
+
+const std::vector<double>& usual_accuracies() {
+  static const std::vector<double> all = [] {
+    std::vector<double> powers;
+    for (int digit = 1; digit <= 9; ++digit) powers.push_back(std::pow(10.0, -digit));
+    return powers;
+  }();
+  return all;
+}
 
 const char* name(Quantity quantity) {
   constexpr const char* names[] = {"position", "energy", "momentum", "modes"};
@@ -51,6 +61,7 @@ Judged judged(const Point& point, const Reference& reference, Quantity quantity)
   const double bound = certified(reference, quantity);
   judged.bounds = known(judged.error, bound);
   judged.is_uncertain = bound > 0.1 * judged.error;
+  judged.counts_at = judged.bounds.at_most;
   if (quantity != Quantity::energy || !reference.is_beyond_horizon()) return judged;
   const auto allowed = largest_difference_by_chance(reference);
   judged.may_count = !(point.path.modal_shares > allowed.value_or(1));

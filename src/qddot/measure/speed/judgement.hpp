@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "qddot/measure/speed/measurement.hpp"
 
@@ -31,8 +32,14 @@ struct Judged {
   // Whether the run may be the reference's motion, for all that is known.
   bool may_count = true;
 
-  // Whether the error is known to be at most the accuracy, and whether it may be.
-  bool is_within(double accuracy) const { return counts && bounds.at_most <= accuracy; }
+  // The error at which the run counts: the upper bound of its own or of a finer run's error (see
+  // judged_together).
+  double counts_at = error;
+  // Whether it counts at an error above one of the usual accuracies that its own error is within.
+  bool is_lucky = false;
+
+  // Whether the run counts as within the accuracy, and whether its error may be.
+  bool is_within(double accuracy) const { return counts && counts_at <= accuracy; }
   bool may_be_within(double accuracy) const { return may_count && bounds.at_least <= accuracy; }
 };
 
@@ -57,9 +64,31 @@ double certified(const Reference& reference);
 // reference's, and no run is known to be right.
 std::optional<double> largest_difference_by_chance(const Reference& reference);
 
+// 1e-1, 1e-2, ... 1e-9.
+const std::vector<double>& usual_accuracies();
+
 // The error of a point in a quantity, and in the quantity that decides. This is the definition of
-// the error that charts, fronts and answers use.
+// the error that charts, fronts and answers use. It counts at its own error.
 Judged judged(const Point& point, const Reference& reference, Quantity quantity);
 Judged judged(const Point& point, const Reference& reference);
+
+// Likewise for the points of a study, where luck does not count. The error of a coarse run may be
+// small by chance, as where it changes its sign between two steps. So a run counts at the largest
+// error of itself and of all finer runs of its method, up to where its order shows. These errors
+// are upper bounds. One is infinite if the run diverged or is another motion; a run that stopped
+// for another reason tells nothing.
+//
+// The order p of a method shows at a run if errors fall as it says over the next two rungs. A rung
+// leads to the next finer run that is expected to have at most half of the error. The expected fall
+// F is the ratio of the steps to the power of p, or the ratio of the tolerances. Errors fall as
+// they should if it is by a factor between F^(1/2) and F^2. For that run, those down to the second
+// rung count. The two rungs themselves follow the order and count at their own errors. If the order
+// never shows from a run on, all finer runs count.
+std::vector<Judged> judged_together(const std::vector<Point>& points, const Reference& reference,
+                                    Quantity quantity);
+
+// Whether the last of a method's points, from coarse to fine, is within an accuracy by what may be
+// luck: its error in the quantity that decides is below that of the run before by more than F^2.
+bool may_be_lucky(const std::vector<Point>& points, const Reference& reference);
 
 }  // namespace qddot::inline measure

@@ -139,7 +139,9 @@ std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scen
   for (int number = 1; const auto value = values.value(number); ++number) {
     const Point& last = points.back();
     if (last.value == *value) continue;
-    if (last.outcome == Outcome::reached_end && (is_enough(last) || stagnation.after(last))) break;
+    if (last.outcome == Outcome::reached_end &&
+        ((is_enough(last) && !may_be_lucky(points, reference)) || stagnation.after(last)))
+      break;
     // A finer implicit run may be faster if Newton's iteration hardly converges at the coarse end:
     // two runs over budget are accepted. Explicit runs only become longer.
     unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;
