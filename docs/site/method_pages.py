@@ -269,7 +269,7 @@ class Method:
             good = [run for run in self.runs(chart) if not run.failure]
             if good:
                 to_it = (run for run in chart_data.ranked(chart, 1e-3) if run.method == self.name)
-                return next(to_it, None) or min(good, key=lambda run: run.at_most)
+                return next(to_it, None) or min(good, key=lambda run: run.counts_at)
         return None
 
     @property

@@ -86,9 +86,9 @@ class Chart:
             self.note(words, 1, (0, BELOW_TICKS), **style)
         if any(run.is_lucky for run in self.good):
             words = "× small by luck: counts as a finer run does"
-            place = {"xy": (1, 1), "xytext": (-6, -6), "xycoords": "axes fraction"}
-            style = {"size": 9.5, "color": FAINT, "ha": "right", "va": "top"}
-            self.axes.annotate(words, textcoords="offset points", **place, **style)
+            box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+            style = {"size": 9.5, "color": FAINT, "ha": "center", "va": "bottom", "bbox": box}
+            self.note(words, 0.5, (0, 6), **style)
         self.draw_chaos()
         self.draw_front()
         for sweep in self.sweeps:
@@ -184,7 +184,7 @@ class Chart:
         self.draw_doubts(sweep, style)
         lucky = [self.position(run) for run in sweep if run.is_lucky and not run.failure]
         if lucky:
-            self.axes.plot(*zip(*lucky), linestyle="", marker="x", markersize=11, **style)
+            self.axes.plot(*zip(*lucky), linestyle="", marker="x", markersize=13, **style)
 
     def draw_doubts(self, sweep, style):
         """Draws the range of a run's error, from its lower to its upper bound, if these are

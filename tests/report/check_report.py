@@ -253,6 +253,25 @@ class BeyondTheHorizon(Folder):
         self.assertEqual(counts, [name != "symmetric8" for name in names])
 
 
+class Luck(Folder):
+    """A folder with a run whose error is small by luck."""
+
+    def test_a_lucky_run_is_no_answer_and_tells_where_it_counts(self):
+        made_folder.make_folder(self.folder, has_motions=False)
+        rows = [row for row in self.rows() if row["outcome"] == "reached_end"]
+        name = rows[0]["method"]
+        own = [row for row in rows if row["method"] == name]
+        own.sort(key=lambda row: -float(row["value"]))
+        for row, error in zip(own, (1e-8, 0.6, *[0.5] * len(own))):
+            row |= {"error_position": error, "time_s": 1e-9}
+        data = self.data_of(rows)
+        lucky = data["quantities"][0]["lucky"]
+        self.assertEqual({str(rows.index(own[0])): 0.6}, {at: round(e, 6) for at, e in lucky.items()})
+        names = [data["methods"][index]["name"] for index in data["points"]["method"]]
+        fastest = {names[answer["point"]] for answer in data["answers"] if answer["point"]}
+        self.assertNotIn(name, fastest)
+
+
 class WithoutScripts(Folder):
     """The page where no scripts run."""
 
