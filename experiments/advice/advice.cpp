@@ -7,7 +7,6 @@
 //
 //   advice --hard --first 20000000 --out results/hard
 //   advice --hard --cases 1 --first 20000007 --scenes --out results/one
-//   advice --step-costs --out results/step_costs
 //
 //  1. Cases are drawn by their number (see drawn_case.hpp). The search was tuned on numbers below
 //     11000000; the study takes others.
@@ -21,16 +20,12 @@
 // and energy against their true motion (see true_motion.hpp), advised runs as well. hard.csv has
 // the answers, hard_worth.csv says for each kind how often they hold and how often one is refused
 // that rounding allows. Rules may be chosen on numbers below 20000000.
-//
-// The option --step-costs replaces all this: it writes step_costs.csv, the times of a step of each
-// method, which forecasts begin with.
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "experiments/advice/case_result.hpp"
 #include "experiments/advice/hard_worth.hpp"
-#include "experiments/advice/step_costs.hpp"
 #include "experiments/advice/worth.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
@@ -52,27 +47,11 @@ int main(int argc, char** argv) {
   auto reference_seconds =
       p.number("--reference-seconds", 5, "approximate number of seconds that a reference may take")
           .positive("the seconds of a reference");
-  auto step_costs = p.flag(
-      "--step-costs", "instead, time a step of each method at four sizes, into step_costs.csv");
   auto hard = p.flag("--hard", "draw hard motions: small ones, judged against their true motion");
   auto scenes =
       p.flag("--scenes", "with --hard, write the scene of each case, and print a line for each");
   p.out("the folder for cases.csv and worth.csv");
 
-  const auto time_steps = [&] {
-    auto& table = p.table("step_costs.csv", {"method", "unknowns", "steps_of_verlet"});
-    return p.write([&] {
-      for (const MeasuredCost& cost : measured_costs()) {
-        fmt::print("{:<26}", cost.method->name);
-        for (std::size_t i = 0; i < sizes_of_costs.size(); ++i) {
-          table->row(cost.method->name, sizes_of_costs[i], cost.steps[i]);
-          fmt::print(" {:>8.3g}", cost.steps[i]);
-        }
-        fmt::print("\n");
-      }
-      return p.origin();
-    });
-  };
   // Judges the cases of these numbers, piece by piece, and tells the results.
   const auto judge = [&]<class Result>(RowTable<Result>& table, const auto& result_of_number,
                                        const auto& tell) {
@@ -146,7 +125,5 @@ int main(int argc, char** argv) {
           fmt::print("{}\n{}", fmt::join(lines_of(results, scenes), "\n"), in_columns(figures));
         });
   };
-  return p.run(argc, argv, [&] {
-    return step_costs ? time_steps() : hard ? judge_hard_cases() : judge_cases();
-  });
+  return p.run(argc, argv, [&] { return hard ? judge_hard_cases() : judge_cases(); });
 }

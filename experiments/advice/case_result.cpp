@@ -138,7 +138,8 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
   result.error_estimate = answer.error_estimate;
   result.total_seconds = answer.seconds.total();
   result.runs = answer.runs;
-  const Advices advices = advise(model, drawn.until, {drawn.accuracy});
+  const Advices advices =
+      advise(model, drawn.until, {drawn.accuracy}, AccuracyOf::positions, &drawn.scene);
   result.advice_seconds = advices.seconds;
   if (const auto& take = advices.for_each.front().take) {
     result.advised = take->method->name;

@@ -109,8 +109,9 @@ HardResult result_of(const HardCase& hard) {
                     .accuracy = hard.accuracy};
   Answer answer;
   try {
-    answer = solve(model, hard.until,
-                   {.accuracy = hard.accuracy, .of = hard.of, .seconds = longest_answer});
+    answer =
+        solve(model, hard.until,
+              {.accuracy = hard.accuracy, .of = hard.of, .seconds = longest_answer}, &hard.scene);
   } catch (const std::exception& error) {
     answer.why = error.what();
   }
@@ -147,7 +148,7 @@ HardResult result_of(const HardCase& hard) {
     }
   }
   try {
-    const Advices advices = advise(model, hard.until, {hard.accuracy}, hard.of);
+    const Advices advices = advise(model, hard.until, {hard.accuracy}, hard.of, &hard.scene);
     result.advice_seconds = advices.seconds;
     const auto& take = advices.for_each.front().take;
     if (!take) return result;

@@ -59,8 +59,7 @@ void print_advice(const Advices& all, const SceneChoice& scene, double until) {
     }
     const Candidate& take = *advice.take;
     fmt::print(fmt::runtime(row), fmt::format("{:.1e}", advice.accuracy), take.method->name,
-               knob_in_words(*take.method, take.value),
-               fmt::format("{:.1e}", take.error),
+               knob_in_words(*take.method, take.value), fmt::format("{:.1e}", take.error),
                time_in_words(take.seconds), beside(advice.runner_up, advice),
                beside(advice.own_explicit, advice), beside(advice.own_implicit, advice),
                beside(advice.sundials, advice));

@@ -125,12 +125,12 @@ py::dict advise_on(const Model& model, double until, const std::vector<double>& 
                    const std::string& of) {
   const AccuracyOf what = accuracy_of(of);
   for (const double accuracy : accuracies) require_accuracy(accuracy, "accuracy");
-  const Advices all = made_outside([&] { return advise(*model.reduced, until, accuracies, what, model.start.get()); });
+  const Advices all = made_outside(
+      [&] { return advise(*model.reduced, until, accuracies, what, model.start.get()); });
   py::list each;
   for (const Advice& advice : all.for_each) {
     each.append(py::dict(arg("accuracy") = advice.accuracy, arg("why") = in_python(advice.why),
-                         arg("margin") = advice.margin(),
-                         arg("take") = candidate(advice.take),
+                         arg("margin") = advice.margin(), arg("take") = candidate(advice.take),
                          arg("runner_up") = candidate(advice.runner_up),
                          arg("own_explicit") = candidate(advice.own_explicit),
                          arg("own_implicit") = candidate(advice.own_implicit),

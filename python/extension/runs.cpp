@@ -99,7 +99,9 @@ py::dict answer(const Model& model, double until, double accuracy, const std::st
   Wanted wanted{.accuracy = accuracy, .of = accuracy_of(of)};
   if (most_seconds) wanted.seconds = *most_seconds;
   Answer found;
-  outside(threads, [&](const std::stop_token&) { found = solve(*model.reduced, until, wanted, model.start.get()); });
+  outside(threads, [&](const std::stop_token&) {
+    found = solve(*model.reduced, until, wanted, model.start.get());
+  });
   py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
                   arg("error_estimate_kind") = name(found.error_estimate_kind),

@@ -68,9 +68,9 @@ BOOST_AUTO_TEST_CASE(every_bound_holds) {
       for (const Trial& trial : search.trials()) {
         const auto bound = search.bound(trial);
         if (!bound) continue;
-        BOOST_TEST(error_of(trial, search, reference) <=
-                       bound->error + reference.certified.position,
-                   trial.method->name << " at " << trial.value);
+        BOOST_TEST(
+            error_of(trial, search, reference) <= bound->error + reference.certified.position,
+            trial.method->name << " at " << trial.value);
       }
     }
   }
@@ -112,7 +112,8 @@ BOOST_AUTO_TEST_CASE(a_pushed_run_checks_and_is_no_answer) {
 }
 
 BOOST_AUTO_TEST_CASE(a_motion_that_lives_in_exact_symmetry_alone_is_told_from_its_drawing) {
-  // A mass between two pins, on springs that push: along the line it vibrates, out of it it buckles.
+  // A mass between two pins, on springs that push: along the line it vibrates, out of it it
+  // buckles.
   Scene scene{.name = "strut", .dimension = 3};
   const Eigen::Vector3d along = Eigen::Vector3d(1, 2, 3).normalized();
   scene.nodes = {{.position = -along, .pinned = true},

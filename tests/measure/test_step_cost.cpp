@@ -11,9 +11,9 @@ BOOST_AUTO_TEST_SUITE(step_cost)
 // The stages of the published schemes; the last one of a step that is the first of the next counts
 // once.
 BOOST_AUTO_TEST_CASE(a_step_takes_the_forces_of_its_formula) {
-  for (const auto& [name, forces] : {std::pair("verlet", 1.), std::pair("position_verlet", 1.),
-                                     std::pair("rk4", 4.), std::pair("symmetric8", 1.),
-                                     std::pair("blanes_moan4", 6.), std::pair("kahan_li8", 17.)})
+  for (const auto& [name, forces] :
+       {std::pair("verlet", 1.), std::pair("position_verlet", 1.), std::pair("rk4", 4.),
+        std::pair("symmetric8", 1.), std::pair("blanes_moan4", 6.), std::pair("kahan_li8", 17.)})
     BOOST_TEST(forces_a_step(method(name)) == forces, name);
 }
 

@@ -66,8 +66,8 @@ Advices of_nothing(const ReducedScene& model, double until, const std::vector<do
   Advices all{.largest_stable_step = infinity, .horizon = infinity};
   const Answer rest = solve(model, until, {});
   for (const double accuracy : accuracies) {
-    all.for_each.push_back({.accuracy = accuracy,
-                            .take = Candidate{rest.method, rest.value, rest.error_estimate, 0}});
+    all.for_each.push_back(
+        {.accuracy = accuracy, .take = Candidate{rest.method, rest.value, rest.error_estimate, 0}});
   }
   return all;
 }

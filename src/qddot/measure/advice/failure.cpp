@@ -34,6 +34,10 @@ std::string rounding_in_words(const Failure& failure, const Search& search, doub
   const double until = search.stage().until(), known = known_until(search, accuracy);
   const std::string instead =
       known > 0 ? fmt::format("; up to t = {:.3g} s it can be reached", known) : "";
+  if (search.stage().of() == AccuracyOf::energy) {
+    return fmt::format("rounding of the positions changes the energy by {:.1e} of the kinetic one",
+                       found.effect);
+  }
   if (is_by_symmetry(found, accuracy)) {
     return fmt::format(
         "rounding moves the drawn nodes out of their line, plane or mirror symmetry, by {:.1e} of "
@@ -51,8 +55,8 @@ std::string rounding_in_words(const Failure& failure, const Search& search, doub
         "the motion is chaotic: rounding has grown beyond the accuracy by t = {:g} s{}", until,
         instead);
   }
-  return fmt::format("one rounding of the start changes the motion by {:.1e} of it{}",
-                     found.effect, instead);
+  return fmt::format("one rounding of the start changes the motion by {:.1e} of it{}", found.effect,
+                     instead);
 }
 
 }  // namespace
@@ -85,9 +89,8 @@ Failure why_not(const Search& search, double accuracy, const std::string& stoppe
   });
   // An effect this large leaves no room for a run's own error.
   constexpr double much = 0.5;
-  failure.is_rounding =
-      conditioning && search.stage().of() != AccuracyOf::energy &&
-      std::max(conditioning->effect, conditioning->leaves_by) > much * accuracy;
+  failure.is_rounding = conditioning && search.stage().of() != AccuracyOf::energy &&
+                        std::max(conditioning->effect, conditioning->leaves_by) > much * accuracy;
   if (const auto parted = parting(search); parted && failure.is_rounding) {
     failure.horizon = parted->horizon;
     failure.lyapunov = parted->lyapunov;

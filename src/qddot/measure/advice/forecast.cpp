@@ -78,8 +78,7 @@ double Forecast::seconds(const Method& method, double value) const {
     return seen->second.seconds * std::pow(seen->second.value / value, share);
   }
   if (!is_forecast_by_frequency(method)) return unknown;
-  return forces_a_step(method) * force_seconds_ *
-         std::max(1.0, std::round(stage_.until() / value));
+  return forces_a_step(method) * force_seconds_ * std::max(1.0, std::round(stage_.until() / value));
 }
 
 double Forecast::largest_step(const Method& method) const {

@@ -42,7 +42,6 @@ Trial& Search::run(const Method& method, double value, const Limits& limits, boo
                               : stage_.run(method, value, both));
   Trial& trial = trials_.back();
   if (!is_pushed) stage_.time_again(trial);
-  if (getenv("QDEBUG")) fprintf(stderr, "%.2f ms: run %s %g pushed %d out %d t %g forces %ld %s\n", 1e3*seconds_since(begin_), method.name.c_str(), value, is_pushed, (int)trial.summary.outcome, trial.summary.t_reached, (long)trial.summary.counts.force_evaluations, trial.summary.message.c_str());
   if (forecast_ && !trial.reached_end()) forecast_->learn_failure(trial);
   return trial;
 }
@@ -59,16 +58,15 @@ double Search::distance(const Trial& one, const Trial& other) const {
 // The largest distance in the second half. Two runs may meet at the end by chance.
 double Search::distance_on_the_way(const Trial& one, const Trial& other) const {
   const std::vector<double> all = stage_.distances(one, other);
-  const auto half = static_cast<std::ptrdiff_t>(
-      stage_.of() == AccuracyOf::path ? 0 : all.size() / 2);
+  const auto half =
+      static_cast<std::ptrdiff_t>(stage_.of() == AccuracyOf::path ? 0 : all.size() / 2);
   return *std::max_element(all.begin() + half, all.end());
 }
 
 bool Search::was_tried(const Method& method, double value) const {
   constexpr double same = 0.01;
   return std::ranges::any_of(trials_, [&](const Trial& trial) {
-    return trial.method == &method && !trial.is_pushed &&
-           std::abs(trial.value / value - 1) < same;
+    return trial.method == &method && !trial.is_pushed && std::abs(trial.value / value - 1) < same;
   });
 }
 
@@ -81,9 +79,11 @@ std::optional<Bound> Search::bound(const Trial& trial) const {
     return Bound{between * stage_.energy_error(trial) + 4 * machine_epsilon +
                  (conditioning_ ? conditioning_->effect : 0)};
   }
+  // A run rounds in each of its steps, not only at its start.
+  constexpr double roundings = 4;
   const double rounding =
       4 * machine_epsilon +
-      (conditioning_ ? std::max(conditioning_->effect, conditioning_->leaves_by) : 0);
+      roundings * (conditioning_ ? std::max(conditioning_->effect, conditioning_->leaves_by) : 0);
   std::optional<Bound> least;
   for (const auto& [by, judged] : judges_) {
     const bool is_itself = by == &trial;

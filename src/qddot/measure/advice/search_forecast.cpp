@@ -19,7 +19,7 @@ constexpr double aim = 0.4;
 // A run checks another one if its expected error is smaller by at least this factor.
 constexpr double finer = 2.4;
 // The bound of an error over its distance to a check.
-constexpr double margin = 1.5;
+constexpr double margin = 2;
 // Two runs at this distance or more have nothing in common.
 constexpr double lost = 0.1;
 // A run that gains this energy, over the kinetic one, has at least a tenth of that as its error.
@@ -114,8 +114,8 @@ void Search::learn() {
   if (!by) return;
   for (const Trial& trial : trials_) {
     if (!trial.reached_end() || trial.is_pushed || &trial == by) continue;
-    const double error = stage_.of() == AccuracyOf::energy ? stage_.energy_error(trial)
-                                                           : distance(trial, *by);
+    const double error =
+        stage_.of() == AccuracyOf::energy ? stage_.energy_error(trial) : distance(trial, *by);
     // An error near that of the other run says nothing.
     if (error > 2 * least) forecast_->learn(trial, error);
   }
@@ -166,8 +166,7 @@ bool Search::judge_by_forecast(double accuracy) {
     const double scale = stage_.scales().kinetic;
     const double gained = scale > 0 ? checked.energy_gain / scale : 0;
     judges_[tried] = {margin * between / (1 - 1 / finer), &checked, false};
-    judges_[&checked] = {std::max(margin * between / finer, witness * gained), tried, true};
-    if (getenv("QDEBUG")) fprintf(stderr, "pair %s %g : %s %g between %g\n", tried->method->name.c_str(), tried->value, checked.method->name.c_str(), checked.value, between);
+    judges_[&checked] = {std::max(margin * between / (finer - 1), witness * gained), tried, true};
     learn();
     forecast_->learn(*tried, between / (1 - 1 / finer));
     if (is_known(*tried, accuracy)) {

@@ -40,9 +40,8 @@ std::int64_t Search::forces_within(double work) const {
 void Search::condition(const Trial& judge) {
   const Trial& twin = run(*judge.method, judge.value, {}, true);
   if (!twin.reached_end()) return;
-  conditioning_ = Conditioning{.effect = distance(judge, twin),
-                               .differences = stage_.distances(judge, twin)};
-  if (getenv("QDEBUG")) fprintf(stderr, "twin %g\n", conditioning_->effect);
+  conditioning_ =
+      Conditioning{.effect = distance(judge, twin), .differences = stage_.distances(judge, twin)};
   condition_symmetry(judge);
 }
 
@@ -52,15 +51,13 @@ void Search::condition_symmetry(const Trial& judge) {
       judge, {.seconds = seconds_left(), .forces = forces_within(much_work)});
   if (left.empty()) return;
   if (!conditioning_) conditioning_.emplace();
-  conditioning_->leaves_by =
-      stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back();
+  conditioning_->leaves_by = stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back();
   conditioning_->differences_left = left;
 }
 
 // Three runs of one method with error control, at tolerances that fall by tens. If they draw
 // together, the finest is within the distance of the finer two.
-bool Search::judge_by_tolerance(const Method& method, double accuracy,
-                                std::int64_t& forces_left) {
+bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left) {
   constexpr double by_tens = 10, largest_tolerance = 1e-2;
   // Errors of implicit methods follow their tolerances less closely.
   const double within = method.is(Trait::implicit) ? 4 : 2;
@@ -87,7 +84,6 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy,
     const Trial &c = *runs.back(), &b = *runs[runs.size() - 2], &a = *runs[runs.size() - 3];
     const double outer = distance_on_the_way(a, c), inner = distance_on_the_way(b, c);
     const bool together = inner <= drawn_together * outer;
-    if (getenv("QDEBUG")) fprintf(stderr, "outer %g inner %g end %g %g\n", outer, inner, distance(a,c), distance(b,c));
     if (together || within * std::max(inner, outer) <= accuracy / 2) {
       judges_[&a] = {within * std::max(distance(a, c), distance(a, b)), &c, false};
       judges_[&b] = {within * std::max(inner, distance(b, c)), &c, false};
@@ -115,8 +111,7 @@ std::vector<const Method*> Search::with_error_control(bool implicitly, double ac
   }
   // Order 8 suits errors from 1e-6 on, order 12 smaller ones.
   constexpr double orders_beyond = 2, least_order = 8, largest_order = 12;
-  const double order =
-      std::clamp(orders_beyond - std::log10(accuracy), least_order, largest_order);
+  const double order = std::clamp(orders_beyond - std::log10(accuracy), least_order, largest_order);
   std::ranges::stable_sort(all, {}, [&](const Method* method) {
     return std::pair(method->family == Family::sundials, std::abs(method->order - order));
   });
@@ -156,8 +151,12 @@ bool Search::judge_in_closed_form() {
   // error of w_max^2 / (2 w) roundings, for a time t.
   const Scales& scales = stage_.scales();
   const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
-  const double phase = bound_of_w_ * stage_.until() * (slow > 0 ? std::max(1.0, bound_of_w_ / slow) : 1);
-  judges_[&trial] = {4 * machine_epsilon * (rests_ ? 1 : 1 + phase), nullptr, false};
+  const double phase =
+      bound_of_w_ * stage_.until() * (slow > 0 ? std::max(1.0, bound_of_w_ / slow) : 1);
+  constexpr double of_rest = 64;  // roundings of sums over the modes
+  const double error = 4 * machine_epsilon * (rests_ ? of_rest : 1 + phase);
+  if (error > part_of_judge) return false;
+  judges_[&trial] = {error, nullptr, false};
   condition(trial);
   if (stage_.is_reduced_by_symmetry()) {
     // Out of the line the motion is not linear.
@@ -178,8 +177,7 @@ std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
   if (steps_of_verlet() < fewest_steps || all.empty()) return 0;
   const Trial& first = run(*all.front(), accuracy, {.forces = first_steps});
   const double a_force = first.seconds / static_cast<double>(first_steps);
-  const double worth =
-      part * steps_of_verlet() * seconds_of_force(stage_.model()) / a_force;
+  const double worth = part * steps_of_verlet() * seconds_of_force(stage_.model()) / a_force;
   return worth > 2 * first_steps ? static_cast<std::int64_t>(worth) : 0;
 }
 
@@ -189,8 +187,7 @@ bool Search::judge(double accuracy) {
   if (judge_in_closed_form()) return true;
   if (stage_.of() == AccuracyOf::energy) return judge_energy(accuracy);
   const auto lastly = [&](bool implicitly) {
-    const bool is_found =
-        judge_by_error_control(accuracy, implicitly, forces_within(much_work));
+    const bool is_found = judge_by_error_control(accuracy, implicitly, forces_within(much_work));
     // The finest run tells whether rounding is the reason.
     if (!is_found && finest_ && !conditioning_) condition(*finest_);
     return is_found;
@@ -218,20 +215,22 @@ bool Search::judge(double accuracy) {
 // The energy of a run is its own judge, as the exact motion keeps it. A run with error control
 // gives the scale: the largest kinetic energy.
 bool Search::judge_energy(double accuracy) {
-  constexpr double largest_tolerance = 1e-3;
+  constexpr double first_tolerance = 1e-3, much_finer = 1e-2;
   std::int64_t forces_left = forces_within(much_work);
   const bool implicitly = stage_.model().system().has_massless();
   const Trial* last = nullptr;
   for (const Method* method : with_error_control(implicitly, accuracy)) {
-    for (double rtol = std::min(accuracy / 10, largest_tolerance);
-         rtol >= least_tolerance && forces_left > 0; rtol /= 10) {
+    double rtol = first_tolerance;
+    for (; rtol >= least_tolerance && forces_left > 0; rtol *= much_finer) {
       const Trial& trial = run(*method, rtol, {.forces = forces_left});
       forces_left -= trial.summary.counts.force_evaluations;
       if (!trial.reached_end()) break;
       measure_by(trial);
       last = &trial;
       judges_[&trial] = {0, nullptr, false};
+      conditioning_ = Conditioning{.effect = stage_.energy_rounding(trial)};
       if (is_known(trial, accuracy)) return true;
+      if (is_hopeless(accuracy)) return false;
     }
     if (last) break;
   }

@@ -56,8 +56,8 @@ std::optional<Candidate> Search::untried(const Trial& answer, double accuracy) c
                              : forecast_->own().at(2);
       double steps = std::max(8.0, std::ceil(stage_.until() * own));
       if (has_linear_step(method))
-        steps = std::max(steps, std::ceil(stage_.until() /
-                                          forecast_->step_by_frequency(method, accuracy)));
+        steps = std::max(
+            steps, std::ceil(stage_.until() / forecast_->step_by_frequency(method, accuracy)));
       value = stage_.until() / steps;
       forces = steps * (method.is(Trait::implicit) ? of_implicit_step : 1);
     } else {

@@ -108,7 +108,7 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted, cons
     answer.is_reached = true;
     answer.error_estimate = search.bound(*found)->error;
     answer.error_estimate_kind = kind_of(search, *found, wanted.of);
-    answer.advised_by = found->method->order == 0         ? AdvisedBy::modes
+    answer.advised_by = found->method->order == 0        ? AdvisedBy::modes
                         : search.is_judged_by_forecast() ? AdvisedBy::forecast
                                                          : AdvisedBy::tolerance;
   } else {

@@ -25,8 +25,7 @@ double forces_a_step(const Method& method) {
   const auto integrator = make_integrator(method, *system, {.step_size = step});
   const auto forces = [&](int steps) {
     State state{0, Vec::Ones(1), Vec::Zero(1)};
-    return static_cast<double>(
-        integrator->advance(state, steps * step).counts.force_evaluations);
+    return static_cast<double>(integrator->advance(state, steps * step).counts.force_evaluations);
   };
   // A method of several steps has begun after as many steps as its order.
   const int begun = 2 * method.order, more = 4;

@@ -25,11 +25,7 @@ constexpr double one_rounding = machine_epsilon / 2;
 }  // namespace
 
 Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, int looks, const Scene* drawn)
-    : model_(model),
-      until_(until),
-      of_(of),
-      drawn_(drawn),
-      times_(random_times(until, looks)) {}
+    : model_(model), until_(until), of_(of), drawn_(drawn), times_(random_times(until, looks)) {}
 
 Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
                       double value, const Limits& limits) const {
@@ -59,8 +55,8 @@ Trial Stage::run(const Method& method, double value, const Limits& limits) const
 }
 
 Trial Stage::run_pushed(const Method& method, double value, const Limits& limits) const {
-  Trial trial = run_from(model_, displaced_start(model_, scales_, one_rounding), method, value,
-                         limits);
+  Trial trial =
+      run_from(model_, displaced_start(model_, scales_, one_rounding), method, value, limits);
   trial.is_pushed = true;
   return trial;
 }
@@ -107,6 +103,17 @@ double Stage::energy_error(const Trial& trial) const {
   return scales_.kinetic > 0 ? trial.energy_gap / scales_.kinetic : trial.energy_gap;
 }
 
+double Stage::energy_rounding(const Trial& trial) const {
+  if (!(scales_.kinetic > 0)) return 0;
+  Vec f(model_.system().size());
+  double largest = 0;
+  for (const State& seen : trial.path) {
+    model_.system().force(seen.q, f);
+    largest = std::max(largest, f.cwiseAbs().dot(seen.q.cwiseAbs()));
+  }
+  return one_rounding * largest / scales_.kinetic;
+}
+
 double Stage::distance(const Trial& one, const Trial& other) const {
   // Between the looks the largest distance may be larger.
   constexpr double between = 1.4;
@@ -130,8 +137,8 @@ bool Stage::is_reduced_by_symmetry() const {
 
 std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial,
                                                      const Limits& limits) const {
-  const ReducedScene drawn(
-      *drawn_, Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  const ReducedScene drawn(*drawn_,
+                           Reductions().without(Reduction::dimension).without(Reduction::mirror));
   Scales scales;
   extend(scales, drawn, drawn.initial());
   // A node that starts at the origin has no coordinate to round; its displacement is rounded
@@ -144,8 +151,8 @@ std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial,
   std::vector<double> all;
   if (!pushed.reached_end()) return all;
   for (std::size_t i = 0; i < times_.size(); ++i) {
-    all.push_back(position_error(drawn.expand(pushed.path[i]),
-                                 model_.expand(trial.path[i]), scales_));
+    all.push_back(
+        position_error(drawn.expand(pushed.path[i]), model_.expand(trial.path[i]), scales_));
   }
   return all;
 }

@@ -74,6 +74,10 @@ class Stage {
   // The largest relative error of the energy on the way, if the energy is asked for.
   double energy_error(const Trial& trial) const;
 
+  // The relative error of the energy if each position along the trial is rounded: the largest sum
+  // of |f q| over its looks, times one rounding.
+  double energy_rounding(const Trial& trial) const;
+
   const ReducedScene& model() const { return model_; }
   double until() const { return until_; }
   AccuracyOf of() const { return of_; }
