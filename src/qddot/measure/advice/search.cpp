@@ -11,7 +11,7 @@ namespace qddot::inline measure {
 namespace {
 
 // Looks at a motion: few if only its end counts, as each costs a step.
-constexpr int fewest_looks = 8, most_looks = 24, looks_at_a_path = 200;
+constexpr int fewest_looks = 8, most_looks = 24, looks_at_a_path = 400;
 
 int number_of_looks(double steps, AccuracyOf of) {
   if (of != AccuracyOf::positions) return looks_at_a_path;

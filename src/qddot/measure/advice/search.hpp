@@ -84,7 +84,7 @@ class Search {
   };
 
   bool judge(double accuracy);
-  bool judge_in_closed_form();
+  bool judge_in_closed_form(double accuracy);
   bool judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left);
   std::vector<const Method*> with_error_control(bool implicitly, double accuracy) const;
   bool judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces);
@@ -93,6 +93,7 @@ class Search {
   bool judge_energy(double accuracy);
   void condition(const Trial& judge);
   void condition_symmetry(const Trial& judge);
+  double beyond_own_error(const Trial& trial, double apart_by) const;
   // Whether rounding alone makes the accuracy impossible.
   bool is_hopeless(double accuracy) const {
     return conditioning_ && std::max(conditioning_->effect, conditioning_->leaves_by) > accuracy;

@@ -37,12 +37,18 @@ std::int64_t Search::forces_within(double work) const {
 }
 
 // Repeats the judge from a start one rounding away, in all that was drawn.
+// What the judge's own error explains is in its bound already.
 void Search::condition(const Trial& judge) {
   const Trial& twin = run(*judge.method, judge.value, {}, true);
   if (!twin.reached_end()) return;
   conditioning_ =
       Conditioning{.effect = distance(judge, twin), .differences = stage_.distances(judge, twin)};
   condition_symmetry(judge);
+}
+
+double Search::beyond_own_error(const Trial& trial, double apart_by) const {
+  const auto judged = judges_.find(&trial);
+  return judged == judges_.end() ? apart_by : std::max(0.0, apart_by - judged->second.error);
 }
 
 void Search::condition_symmetry(const Trial& judge) {
@@ -130,7 +136,7 @@ bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64
   return false;
 }
 
-bool Search::judge_in_closed_form() {
+bool Search::judge_in_closed_form(double accuracy) {
   const ReducedScene& model = stage_.model();
   if (!model.system().stiffness_is_constant()) return false;
   // An eigenproblem of n unknowns takes about n^3 times this many forces' unknowns.
@@ -160,7 +166,8 @@ bool Search::judge_in_closed_form() {
   condition(trial);
   if (stage_.is_reduced_by_symmetry()) {
     // Out of the line the motion is not linear.
-    constexpr double tolerance = 1e-6;
+    constexpr double part = 1e-3;
+    const double tolerance = std::max(least_tolerance, part * accuracy);
     const Trial& other = run(*with_error_control(false, tolerance).front(), tolerance,
                              {.forces = forces_within(much_work)});
     if (other.reached_end()) condition_symmetry(other);
@@ -184,7 +191,7 @@ std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
 bool Search::judge(double accuracy) {
   const System& system = stage_.model().system();
   if (w_start_ == 0) w_start_ = bound_of_w_;
-  if (judge_in_closed_form()) return true;
+  if (judge_in_closed_form(accuracy)) return true;
   if (stage_.of() == AccuracyOf::energy) return judge_energy(accuracy);
   const auto lastly = [&](bool implicitly) {
     const bool is_found = judge_by_error_control(accuracy, implicitly, forces_within(much_work));
