@@ -164,7 +164,8 @@ BOOST_DATA_TEST_CASE(where_a_force_becomes_no_number_a_run_ends_just_before,
       r.summary.message);
   BOOST_TEST(is_finite(r.state));
   BOOST_TEST(r.state.t == r.summary.t_reached);
-  BOOST_TEST(r.state.t > 0.15);
+  // ARKODE's explicit methods give up in the step that meets it; of order 8 it is 0.1 s long.
+  BOOST_TEST(r.state.t > (method.order == 8 ? 0.09 : 0.15));
   // The end of a step is a sum of rates, differences of solutions, and its last stage a solution:
   // the same but for rounding.
   BOOST_TEST(r.state.q[0] > 0.2 - 1e-14);

@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(slow_passes_and_near_turns_are_told_apart_or_the_run_says_t
     return std::uniform_real_distribution(low, high)(random);
   };
   int reached = 0, told = 0;
-  for (int trial = 0; trial < 40; ++trial) {
+  for (int trial = 0; trial < 150; ++trial) {
     SlowPass exact{std::pow(10, uniform(0.5, 2.5)), std::pow(10, uniform(0.5, 3)), uniform(0.1, 3),
                    uniform(0.3, 1), 0};
     if (trial % 3 == 0) exact.c = 0;
@@ -146,9 +146,10 @@ BOOST_AUTO_TEST_CASE(slow_passes_and_near_turns_are_told_apart_or_the_run_says_t
                            .rest_length = static_cast<double>(exact.l0),
                            .quartic = static_cast<double>(exact.c)}}};
     for (const char* method : {"dprkn6", "dprkn8", "dprkn12", "rodas4"}) {
-      for (const double rtol : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-12}) {
+      for (const double rtol : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12}) {
         const bool is_low = method_named(method).order == 4;
-        if (is_low && rtol < 1e-8) continue;
+        // Errors of order 4 add up to tens of coarse tolerances.
+        if (is_low && (rtol < 1e-8 || rtol > 1e-6)) continue;
         BOOST_TEST_CONTEXT(method << " at " << rtol << " in trial " << trial << ", depth "
                                   << depth) {
           const Options options{.rtol = rtol, .length = length, .speed = length * rate};
@@ -162,16 +163,16 @@ BOOST_AUTO_TEST_CASE(slow_passes_and_near_turns_are_told_apart_or_the_run_says_t
             continue;
           }
           // An error e of the depth changes the time of a pass by e/v, v = sqrt(2 a depth), so
-          // that positions err by some e sqrt(length/depth) a pass.
-          const double error = 100 * rtol + 1e-13;
-          BOOST_TEST(std::abs(r.state.q[0] - position) <
-                     error * length * std::sqrt(length / depth));
+          // that positions err by some e sqrt(length/depth) a pass. On the wrong way they err by
+          // more than a quarter of the length.
+          const double error = (100 * rtol + 1e-13) * std::sqrt(length / depth);
+          BOOST_TEST(std::abs(r.state.q[0] - position) < std::min(error, 0.25) * length);
           ++reached;
         }
       }
     }
   }
-  BOOST_TEST(reached > 5 * told);
+  BOOST_TEST(reached > 3 * told);
   BOOST_TEST(told > 0);
 }
 
@@ -243,6 +244,12 @@ BOOST_AUTO_TEST_CASE(a_change_of_sign_is_found_and_one_that_may_be_is_told) {
   const double w = 4 * M_PI;
   BOOST_TEST_REQUIRE(search.first(at(0, 1.01, w, 0), at(1, 1.01, w, 0)).has_value());
   BOOST_TEST(!search.first(at(0, 1.01, w, 0), at(1, 1.01, w, 0))->is_certain);
+  // At 2 m/s towards zero against 4 m/s^2 it would turn 0.5 m beyond, if it were not driven away
+  // there. If it is driven back on both sides, no ways part.
+  BOOST_TEST(std::abs(search.depth(at(0, 0.1, -2, 4), at(0.1, -0.1, -2, -4)) - 0.5) < 1e-15);
+  BOOST_TEST(std::abs(search.depth(at(0, -0.1, 2, -4), at(0.1, 0.1, 2, 4)) - 0.5) < 1e-15);
+  BOOST_TEST(search.depth(at(0, 0.1, -2, 4), at(0.1, -0.1, -2, 4)) == INFINITY);
+  BOOST_TEST(search.depth(at(0, 0.1, -2, 4), at(0.1, 0.1, 2, 4)) == INFINITY);
   // Springs of rest length zero, and those in a plane, have none.
   BOOST_TEST(!KinkSearch(*make_mass_spring(Oscillator().problem().network)).has_kinks());
   BOOST_TEST(!KinkSearch(*make_mass_spring(hammock(2).network)).has_kinks());

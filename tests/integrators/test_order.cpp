@@ -169,11 +169,14 @@ BOOST_DATA_TEST_CASE(every_method_of_fixed_steps_has_its_order, of_fixed_steps()
 
 BOOST_DATA_TEST_CASE(steps_that_a_method_chooses_show_its_order, of_chosen_steps(), method) {
   // ARKODE keeps a step size until it can be longer by half. The highest orders take some ten steps
-  // in a second, too few to show the order.
+  // in a second, too few to show the order. At 1e-4 rodas4 takes fifty, and the first ones,
+  // which grow by factors, count.
   const bool is_own = method.family == Family::hand_written;
   const bool is_nystrom = is_own && !method.is(Trait::implicit);
   const bool is_long = method.order > 5 && !is_own;
-  const double rtol = is_own              ? (method.order == 8 ? 1e-6 : 1e-4)
+  const double rtol = is_own              ? (method.order == 8            ? 1e-6
+                                             : method.is(Trait::implicit) ? 1e-5
+                                                                          : 1e-4)
                       : method.order == 2 ? 1e-4
                       : is_long           ? 1e-8
                                           : 1e-7;

@@ -29,8 +29,8 @@ namespace qddot {
 // If the force jumps (see Kinks), a step ends just before the jump, whatever its error estimate. A
 // step of some roundings of the time crosses it, and the next begins on the other side. Steps in
 // which a length may pass through zero and return are tried again shorter. If a length turns, or
-// would turn without the jump, within its tolerance of zero, the run ends: the two ways part there,
-// and which of them the motion takes is beyond the tolerance.
+// would turn without the jump, within a few tolerances of zero, the run ends: the two ways part
+// there, and which of them the motion takes is beyond the tolerance.
 class AdaptiveStep : public Integrator {
  protected:
   // Errors are of order h^(error_order + 1). States between steps are interpolated through
