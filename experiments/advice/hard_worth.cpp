@@ -51,9 +51,10 @@ void add_figures(std::vector<Figure>& figures, const std::string& which,
       [](const R& r) { return r.is_well_posed() && !r.advised.empty(); },
       [](const R& r) { return r.advised_error - r.conditioning <= r.accuracy; });
   share(
-      "told_slack", "motions that end where a massless joint goes slack, and are not claimed",
+      "told_slack",
+      "motions that end where a massless joint goes slack, and a refusal that says so",
       [](const R& r) { return r.left_out == goes_slack; },
-      [](const R& r) { return !r.is_claimed && r.why.find("slack") != std::string::npos; });
+      [](const R& r) { return !r.is_claimed && r.why.find("massless") != std::string::npos; });
   std::vector<double> widths, seconds;
   for (const HardResult* result : results) {
     seconds.push_back(result->seconds);
