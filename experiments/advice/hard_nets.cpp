@@ -107,6 +107,9 @@ void prestressed(HardCase& c, Draws& draw) {
       c.scene.nodes.push_back(node);
     }
   }
+  Node& inner = c.scene.nodes[at(1, 1)];
+  if (side == 3 && inner.position == Eigen::Vector3d(1, 1, 0))
+    inner.position += draw.in_box(d, pluck);
   for (int i = 0; i < side; ++i) {
     for (int j = 0; j < side; ++j) {
       if (i + 1 < side) join(c.scene, at(i, j), at(i + 1, j), k, 1 / stretch);
