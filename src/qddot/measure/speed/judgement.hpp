@@ -81,14 +81,13 @@ Judged judged(const Point& point, const Reference& reference);
 // The order p of a method shows at a run if errors fall as it says over the next two rungs. A rung
 // leads to the next finer run that is expected to have at most half of the error. The expected fall
 // F is the ratio of the steps to the power of p, or the ratio of the tolerances. Errors fall as
-// they should if it is by a factor between F^(1/2) and F^2. For that run, those down to the second
-// rung count. The two rungs themselves follow the order and count at their own errors. If the order
-// never shows from a run on, all finer runs count.
+// they should if it is by a factor between F^(3/4) and F^(5/4). Then all runs down to the second
+// rung count. If the order shows neither at a run nor at a finer one, all finer runs count.
 std::vector<Judged> judged_together(const std::vector<Point>& points, const Reference& reference,
                                     Quantity quantity);
 
-// Whether the last of a method's points, from coarse to fine, is within an accuracy by what may be
-// luck: its error in the quantity that decides is below that of the run before by more than F^2.
-bool may_be_lucky(const std::vector<Point>& points, const Reference& reference);
+// Whether the finest of a method's points follows the order in the quantity that decides: it is the
+// second rung of a run at which the order shows.
+bool last_follows_order(const std::vector<Point>& points, const Reference& reference);
 
 }  // namespace qddot::inline measure

@@ -119,6 +119,13 @@ std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scen
     return error_of(point, reference) <= certified(reference) || (is_last && is_last(point));
   };
   std::vector<Point> points;
+  // One run may be accurate by luck, two are not.
+  const auto ends_well = [&] {
+    if (!is_enough(points.back())) return false;
+    const bool is_second = points.size() > 1 && points.end()[-2].outcome == Outcome::reached_end &&
+                           is_enough(points.end()[-2]);
+    return is_second || last_follows_order(points, reference);
+  };
   const auto take = [&](double value) -> const Point& {
     points.push_back(!points.empty() && takes_too_long(method, points.back(), value, effort)
                          ? Point{.method = &method, .value = value, .outcome = Outcome::over_budget}
@@ -139,9 +146,7 @@ std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scen
   for (int number = 1; const auto value = values.value(number); ++number) {
     const Point& last = points.back();
     if (last.value == *value) continue;
-    if (last.outcome == Outcome::reached_end &&
-        ((is_enough(last) && !may_be_lucky(points, reference)) || stagnation.after(last)))
-      break;
+    if (last.outcome == Outcome::reached_end && (ends_well() || stagnation.after(last))) break;
     // A finer implicit run may be faster if Newton's iteration hardly converges at the coarse end:
     // two runs over budget are accepted. Explicit runs only become longer.
     unfinished = last.outcome == Outcome::over_budget ? unfinished + 1 : 0;

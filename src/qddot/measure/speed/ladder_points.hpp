@@ -14,7 +14,8 @@ namespace qddot::inline measure {
 // - rounding keeps its error from falling,
 // - its run takes longer than the effort allows (its outcome is over_budget),
 // - it reached the end and `is_last` holds.
-// The first and the last do not end it if its error may be lucky.
+// Luck does not end it: for the first and the last, the run before must be as good, or errors must
+// have fallen as the order says (see judged_together).
 // The expected error falls by a factor of four from point to point (step sizes: h by 4^(1/order)),
 // or by ten (tolerances). Fixed steps are denser near the stability limit of the whole run (see
 // ladder.hpp), for explicit methods and for implicit ones that blew up. `report` is called with

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "qddot/measure/speed/judgement.hpp"
 
@@ -12,6 +13,9 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
+// The powers of an expected fall between which errors fall as the order says. Where it does, they
+// fall by some percent more or less. Errors of chance seldom do so twice.
+constexpr double least_fall = 0.75, largest_fall = 1.25;
 
 // What a run tells of the coarser ones.
 struct Run {
@@ -33,10 +37,6 @@ double expected_fall(const Method& method, double coarse, double fine) {
   return method.knob == Knob::step_size ? std::pow(ratio, method.order) : ratio;
 }
 
-bool falls_too_steeply(double coarse, double fine, double expected) {
-  return !(coarse <= fine * expected * expected);
-}
-
 // The runs of one method, from coarse to fine.
 class Sequence {
  public:
@@ -46,18 +46,20 @@ class Sequence {
 
   // Lets each point count at the largest error up to where the order shows.
   void count(std::vector<Judged>& judged) const {
-    std::vector<bool> follows(runs_.size());  // a run at which the order shows, as one of its rungs
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-      const auto [first, second] = rungs(i);
-      if (second) follows[*first] = follows[*second] = true;
-    }
     std::size_t end = runs_.size();  // one past the runs that count for the present one
     for (std::size_t i = runs_.size(); i-- > 0;) {
-      const auto second = rungs(i).second;
-      if (second || follows[i]) end = second && !follows[i] ? *second + 1 : i + 1;
+      if (const auto second = order_shows(i)) end = *second + 1;
       double& counts_at = judged[runs_[i].point].counts_at;
       for (std::size_t j = i; j < end; ++j) counts_at = std::max(counts_at, runs_[j].at_most);
     }
+  }
+
+  // Whether the finest run is the second rung of one at which the order shows.
+  bool last_follows() const {
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      if (order_shows(i) == runs_.size() - 1) return true;
+    }
+    return false;
   }
 
  private:
@@ -67,16 +69,16 @@ class Sequence {
       const double expected = expected_fall(method_, runs_[i].value, runs_[j].value);
       if (expected < 2) continue;
       const double coarse = runs_[i].error, fine = runs_[j].error;
-      const bool falls = coarse >= fine * std::sqrt(expected) && std::isfinite(coarse);
-      return falls && !falls_too_steeply(coarse, fine, expected) ? std::optional(j) : std::nullopt;
+      const double fall = std::log(coarse / fine) / std::log(expected);
+      return fall >= least_fall && fall <= largest_fall ? std::optional(j) : std::nullopt;
     }
     return {};
   }
 
-  // The two rungs after run i, if the order shows there; else the second is empty.
-  std::pair<std::optional<std::size_t>, std::optional<std::size_t>> rungs(std::size_t i) const {
+  // The second rung after run i, if the order shows at i.
+  std::optional<std::size_t> order_shows(std::size_t i) const {
     const auto first = rung(i);
-    return {first, first ? rung(*first) : std::nullopt};
+    return first ? rung(*first) : std::nullopt;
   }
 
   const Method& method_;
@@ -103,15 +105,12 @@ std::vector<Judged> judged_together(const std::vector<Point>& points, const Refe
   return all;
 }
 
-bool may_be_lucky(const std::vector<Point>& points, const Reference& reference) {
-  if (points.size() < 2) return false;
-  const Point &fine = points.back(), &coarse = points[points.size() - 2];
-  const auto at_most = [&](const Point& point) {
-    const auto run = run_of(point, judged(point, reference), 0);
-    return run ? run->at_most : infinite;
-  };
-  return falls_too_steeply(at_most(coarse), at_most(fine),
-                           expected_fall(*fine.method, coarse.value, fine.value));
+bool last_follows_order(const std::vector<Point>& points, const Reference& reference) {
+  std::vector<Run> runs;
+  for (const Point& point : points) {
+    if (const auto run = run_of(point, judged(point, reference), runs.size())) runs.push_back(*run);
+  }
+  return !runs.empty() && Sequence(*points.back().method, std::move(runs)).last_follows();
 }
 
 }  // namespace qddot::inline measure
