@@ -184,8 +184,11 @@ class Charts(Programs):
         for method in ("rk4", "trapezoidal", "ida"):
             own = [row for row in rows if row["method"] == method]
             fine = [row["error_position_at_most"] <= 1e-4 for row in own]
-            # Near rk4's limit of stability steps are taken closer, up to the first that will do.
-            self.assertTrue(any(fine) if method == "rk4" else fine.index(True) == len(fine) - 1)
+            # Near rk4's limit of stability steps are taken closer, up to the first that will do. Errors
+            # of ida do not follow its tolerances closely: one run may do by luck, a second tells.
+            self.assertIn(True, fine)
+            most = {"rk4": len(fine), "trapezoidal": 1, "ida": 2}[method]
+            self.assertLessEqual(len(fine) - fine.index(True), most)
         self.assertEqual([row["accuracy"] for row in table("front.csv")], [1e-2, 1e-4])
 
     def test_where_all_is_pinned_every_method_is_exact(self):
