@@ -6,8 +6,8 @@
 //
 //  1. w is the highest frequency at the start that the stiff springs (Scene::stiff_above) make by
 //     themselves, without the soft ones. In scene fpu it is its parameter `frequency`. A method's
-//     step is h = (h w)/w, all of the way. So the motion is seen at multiples of h only, those
-//     nearest to multiples of --every.
+//     step is h = (h w)/w, all of the way. So the motion is seen at ends of steps only: random ones,
+//     about one in each --every.
 //  2. The reference is Kahan and Li's composition of order 8 at h w = 0.1. Its distance to Dormand
 //     and Prince's Nystrom pair 12(10) at rtol = 1e-12 certifies it.
 //  3. exchange.csv has the oscillatory energy of each stiff spring over time (stiff_energies.hpp),
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
           .check(require_h_omegas);
   auto until = p.until();
   auto every = p.number("--every",
-                        "the approximate time between samples in exchange.csv in s (default: a "
+                        "the mean time between samples in exchange.csv in s (default: a "
                         "thousandth of --until)")
                    .positive("a time in s");
   auto& courses = p.table("exchange.csv", {"method", "h", "h_omega", "t", "spring", "energy"});
@@ -121,7 +121,7 @@ int main(int argc, char** argv) {
           const double h = h_omega / excitation.omega;
           const std::string shown = fmt::format("{} at h w = {:g}", method->name, h_omega);
           progress().now_at(shown);
-          const auto times = multiples_near(excitation.every, h, excitation.until);
+          const auto times = looks(excitation, h);
           const auto record = study.piece(fmt::format("{} {:.17g}", method->name, h), [&] {
             return record_of(exchange_run(excitation, *method, h, times));
           });

@@ -32,8 +32,8 @@ QUANTITIES = {
     "energy": Quantity(
         "its energy error up to",
         "relative energy error",
-        "energy error on the way: the largest |E(t) − E(0)| at about a hundred times, divided by"
-        " the largest kinetic energy",
+        "energy error on the way: the largest |E(t) − E(0)| at random times, divided by the largest"
+        " kinetic energy",
         has_front=True,
     ),
     "momentum": Quantity(

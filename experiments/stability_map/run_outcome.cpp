@@ -12,6 +12,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/error.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
 
@@ -39,15 +40,18 @@ struct Sample {
   double t, ratio;  // X over X(0)
 };
 
-// Every step at first, for fast growth, then equally spaced times; all are multiples of h, so that
-// no step is changed.
+// Every step at first, for fast growth, then random ones; all are multiples of h, so that no step
+// is changed.
 std::vector<double> looks(const Options& options, double until) {
   std::vector<double> times;
   const double h =
       options.step_size > 0 ? options.step_size : until / (watched_steps + samples_more);
   const double steps = std::clamp(std::round(until / h), 1.0, most_steps);
-  const double stride = std::max(1.0, std::floor(steps / samples_more));
-  for (double n = 1; n <= steps; n += n < watched_steps ? 1 : stride) times.push_back(n * h);
+  const double watched = std::min<double>(steps, watched_steps);
+  for (double n = 1; n <= watched; ++n) times.push_back(n * h);
+  for (const double n : random_step_times(1, steps, samples_more)) {
+    if (n > watched) times.push_back(n * h);
+  }
   return times;
 }
 

@@ -223,8 +223,7 @@ py::dict exchange(const Model& model, const Names& names, const std::vector<doub
         stop_if_interrupted();
         const double h = h_omega / excitation->omega;
         runs.push_back({&method(name), h_omega,
-                        exchange_run(*excitation, method(name), h,
-                                     multiples_near(excitation->every, h, until))});
+                        exchange_run(*excitation, method(name), h, looks(*excitation, h))});
       }
     }
     stop_if_interrupted();

@@ -8,7 +8,7 @@
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
-#include "qddot/measure/motion/samples.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -85,15 +85,14 @@ ExchangeRun exchange_run(const Excitation& excitation, const Method& method, dou
   return run;
 }
 
-std::vector<double> multiples_near(double every, double h, double until) {
-  auto times = samples(h * std::max(1.0, std::round(every / h)), until);
-  times.erase(times.begin());
-  return times;
+std::vector<double> looks(const Excitation& excitation, double h) {
+  const auto count = static_cast<std::int64_t>(std::ceil(excitation.until / excitation.every));
+  return random_step_times(h, excitation.until, count);
 }
 
 CertifiedCourse certified_course(const Excitation& excitation, const Recall& recall) {
   CertifiedCourse reference{.h = CertifiedCourse::h_omega / excitation.omega};
-  const auto times = multiples_near(excitation.every, reference.h, excitation.until);
+  const auto times = looks(excitation, reference.h);
   const auto reached = [&](const char* name, double value) {
     const auto make = [&] { return exchange_run(excitation, *find_method(name), value, times); };
     ExchangeRun run = recall ? recall(fmt::format("reference {}", name), make) : make();

@@ -15,11 +15,15 @@ namespace qddot::inline measure {
 struct Excitation {
   Scene start;
   ReducedScene scene;
-  double until = 0, every = 0;  // [s]; `every`: approximate time between looks
+  double until = 0, every = 0;  // [s]; `every`: mean time between looks
   double omega = 0;             // the highest frequency of the stiff springs alone [rad/s]
   double window = 0;            // [s], of running means: 40 periods, at most until/4
   double energy = 0, sum = 0;   // H, and the oscillatory energy of all stiff springs, at t = 0 [J]
 };
+
+// The times [s] of the looks at a run with steps of h [s]: ends of random steps, about one in each
+// `every`, so that no vibration is in step with them.
+std::vector<double> looks(const Excitation& excitation, double h);
 
 // Measures the start of a scene. Throws InvalidInput, in a sentence that starts with `source`, if
 // no stiff spring moves or none has energy.
@@ -37,9 +41,6 @@ struct ExchangeRun {
 // constant steps must reach these in whole steps. `value`: of the knob, h [s] or rtol.
 ExchangeRun exchange_run(const Excitation& excitation, const Method& method, double value,
                          const std::vector<double>& times, double seconds = 60);
-
-// The positive multiples of h [s] nearest to the multiples of `every` [s], up to `until` [s].
-std::vector<double> multiples_near(double every, double h, double until);
 
 // The reference of an exchange. It is a run of Kahan and Li's composition of order 8 at h w = 0.1,
 // certified by Dormand and Prince's Nystrom pair 12(10) at rtol = 1e-12.

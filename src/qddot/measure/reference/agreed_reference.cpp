@@ -9,6 +9,7 @@
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/base/step_times.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
 
@@ -16,7 +17,7 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr int most_levels = 12;
-constexpr std::int64_t samples_for_scales = 1000;  // for the scales
+constexpr std::int64_t looks_for_scales = 1000;
 
 // A method that computes the motion, more accurately with each level.
 struct Way {
@@ -34,12 +35,9 @@ std::optional<Solution> resolved(const ReducedScene& scene, const char* name, do
   const double w = frequency_bound(scene.system(), scene.initial().q);
   const double least = std::max(16.0, std::ceil(until * w / coarsest * std::exp2(level)));
   if (!(least < most_steps)) return {};
-  const auto samples = std::min(static_cast<std::int64_t>(least), samples_for_scales);
-  // The number of steps from one sample to the next is whole.
-  const double h =
-      until / static_cast<double>(samples) / std::ceil(least / static_cast<double>(samples));
-  auto solution = seen_run(scene, *find_method(name), {.step_size = h}, scene.initial(), until,
-                           samples, seconds);
+  const double h = until / least;
+  auto solution = seen_run(scene, *find_method(name), {.step_size = h}, scene.initial(),
+                           random_step_times(h, until, looks_for_scales), seconds);
   if (solution) solution->made_by = fmt::format("{} at h = {:.6g} s", name, h);
   return solution;
 }
@@ -47,7 +45,7 @@ std::optional<Solution> resolved(const ReducedScene& scene, const char* name, do
 std::optional<Solution> ida(const ReducedScene& scene, double until, double rtol, double seconds) {
   if (rtol < least_rtol) return {};
   auto solution = seen_run(scene, *find_method("ida"), with_tolerance_scales({.rtol = rtol}, scene),
-                           scene.initial(), until, 1, seconds);
+                           scene.initial(), {until}, seconds);
   if (solution) solution->made_by = fmt::format("ida at rtol = {:.0e}", rtol);
   return solution;
 }

@@ -8,6 +8,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
@@ -64,25 +65,20 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
 }  // namespace
 
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
-                                 const Options& options, const State& initial, double until,
-                                 std::int64_t samples, double seconds) {
+                                 const Options& options, const State& initial,
+                                 const std::vector<double>& times, double seconds) {
   const auto integrator = make_integrator(method, scene.system(), options);
   Solution solution{.end = initial};
   const Deadline deadline(seconds);
-  const std::int64_t gap = (samples + most_looks - 1) / most_looks;
-  const std::int64_t looks = (samples + gap - 1) / gap;
-  const std::int64_t stride = (looks + longest_path - 1) / longest_path;
-  std::int64_t seen = 0;
-  Observer each{{}, [&](const State& state) {
-                  extend(solution.scales, scene, state);
-                  if (++seen % stride == 0 || seen == looks) solution.path.push_back(state);
-                }};
-  for (std::int64_t i = gap; i < samples; i += gap) {
-    each.times.push_back(until * static_cast<double>(i) / static_cast<double>(samples));
-  }
-  each.times.push_back(until);
+  const auto looks = static_cast<double>(times.size());
+  const auto kept = random_step_times(1, looks, longest_path);  // looks, counted from one
+  double seen = 0;
+  const Observer each{times, [&](const State& state) {
+                        extend(solution.scales, scene, state);
+                        if (++seen == kept[solution.path.size()]) solution.path.push_back(state);
+                      }};
   extend(solution.scales, scene, solution.end);
-  const Summary summary = integrator->advance(solution.end, until, each, deadline.token());
+  const Summary summary = integrator->advance(solution.end, times.back(), each, deadline.token());
   stop_if_interrupted();
   if (summary.outcome != Outcome::reached_end) return {};
   return solution;
@@ -90,9 +86,8 @@ std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method
 
 std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
                                     double h, double seconds) {
-  const auto steps = static_cast<std::int64_t>(std::round(until / h));
-  auto solution =
-      seen_run(scene, *find_method("kahan_li8"), {.step_size = h}, initial, until, steps, seconds);
+  auto solution = seen_run(scene, *find_method("kahan_li8"), {.step_size = h}, initial,
+                           random_step_times(h, until, most_looks), seconds);
   if (!solution) return {};
   solution->knob = h;
   solution->made_by = fmt::format("kahan_li8 at h = {:.6g} s", h);

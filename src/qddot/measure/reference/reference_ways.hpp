@@ -16,19 +16,19 @@ struct Solution {
   Scales scales{};
   double knob = 0;
   std::string made_by{};
-  std::vector<State> path{};  // at some of the samples, the end included
+  std::vector<State> path{};  // at some of the looks, the end included
   Errors change = no_error;   // change that refinement may still make; zero if not refined
 };
 
-// The motion from `initial` by a method with these options. Its scales are taken at the ends of
-// `samples` equal parts of the time; of more than a million, at some of these. About a hundred of
-// them make its path. Empty if it does not reach the end in `seconds`.
+// The motion from `initial` by a method with these options, to the last of `times` [s]. Its scales
+// are taken at all of them. Up to a hundred make its path, drawn at random so that they are not in
+// step with the motion; the end is one. Empty if it does not reach the end in `seconds`.
 std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
-                                 const Options& options, const State& initial, double until,
-                                 std::int64_t samples, double seconds);
+                                 const Options& options, const State& initial,
+                                 const std::vector<double>& times, double seconds);
 
 // The motion by Kahan and Li's composition of order 8 with steps of h [s], with scales from each
-// step.
+// step; of more than a million, from random ones.
 std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
                                     double h, double seconds);
 

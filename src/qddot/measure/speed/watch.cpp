@@ -5,23 +5,21 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 
 namespace qddot::inline measure {
 namespace {
 
+// Momenta and modes of all nodes cost more than the energy; they are taken at so many of the looks.
+constexpr std::size_t fewer_looks = 1000;
+
 std::vector<double> looks(const Method& method, const Options& options, double until,
                           std::int64_t steps) {
-  const bool fixed = method.knob == Knob::step_size && method.order > 0;
+  if (method.knob == Knob::step_size && method.order > 0)
+    return random_step_times(options.step_size, until, Watch::most_looks);
   // The steps of all parts were counted together, but each part has its own.
-  const double whole =
-      fixed ? std::round(until / options.step_size) : std::floor(static_cast<double>(steps) / 4);
-  const double count = std::clamp(whole, 1.0, Watch::most_looks);
-  std::vector<double> times;
-  for (double i = 1; i < count; ++i) {
-    times.push_back(fixed ? std::round(i / count * whole) * options.step_size : i / count * until);
-  }
-  times.push_back(until);
-  return times;
+  const std::int64_t all = method.is(Trait::interpolates) ? steps : steps / 4;
+  return random_times(until, std::clamp<std::int64_t>(all, 1, Watch::most_looks));
 }
 
 }  // namespace
@@ -36,12 +34,16 @@ PathErrors Watch::see(const Method& method, const Options& options, std::int64_t
                       double seconds) const {
   State state = scene_.initial();
   const auto nodes = scene_.expand(state);
+  const double scale = reference_.scales.kinetic > 0 ? reference_.scales.kinetic : 1;
   double energy = 0, momentum = 0;
   std::vector<State> path;
+  std::size_t seen_before = 0;
+  const auto times = looks(method, options, until_, steps);
+  const std::size_t stride = (times.size() + fewer_looks - 1) / fewer_looks;
   const Observer observer{
-      looks(method, options, until_, steps), [&](const State& now) {
-        energy = std::max(
-            energy, errors_between(scene_, now, now, reference_.energy, reference_.scales).energy);
+      times, [&](const State& now) {
+        energy = std::max(energy, std::abs(scene_.energy(now) - reference_.energy) / scale);
+        if (++seen_before % stride != 0 && seen_before < times.size()) return;
         if (momenta_.any_kept()) {
           momentum = std::max(
               momentum, momenta_.change(nodes, scene_.expand(now), now.t, reference_.scales.speed));

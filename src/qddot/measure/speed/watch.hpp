@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -21,16 +22,18 @@ struct PathErrors {
   double modal_shares = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Measures runs at about a hundred times up to `until` [s]. Borrows all its arguments.
+// Measures runs on their way to `until` [s]: the energy at up to 10 000 random times, and the rest
+// at up to a thousand of these. Borrows all its arguments.
 class Watch {
  public:
-  static constexpr double most_looks = 100;
+  static constexpr std::int64_t most_looks = 10'000;
 
   Watch(const Scene& start, const ReducedScene& scene, double until, const Reference& reference);
 
   // Runs a method, which took `steps` steps before, once more and measures the run. Fixed steps
-  // keep their size: looks are between whole steps. Adaptive steps have to end at the looks, so
-  // that there are at most steps/4 of these. Stops after `seconds`.
+  // keep their size: looks are between whole steps, and at each if there are no more than looks.
+  // Methods that interpolate are seen as often as they step. The others have to end their steps at
+  // the looks, so that there are at most steps/4 of these. Stops after `seconds`.
   PathErrors see(const Method& method, const Options& options, std::int64_t steps,
                  double seconds) const;
 

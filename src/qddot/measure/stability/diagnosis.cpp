@@ -11,6 +11,7 @@
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/motion/vibrating_modes.hpp"
@@ -38,15 +39,11 @@ constexpr Index most_factorized = 100000;
 
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
-// Runs the method and calls see() for each of some times up to `until`, for `seconds` at most.
+// Runs the method and calls see() for each of some times before `until`, for `seconds` at most.
 Summary run(const Method& method, const Options& options, const ReducedScene& scene, double until,
             double seconds, const std::function<void(const State&)>& see) {
-  const double steps = std::max(1.0, std::floor(until / options.step_size));
-  const double stride = std::max(1.0, std::floor(steps / most_looks_back));
-  Observer some{{}, see};
-  for (double n = stride; n * options.step_size < until; n += stride) {
-    some.times.push_back(n * options.step_size);
-  }
+  Observer some{random_step_times(options.step_size, until, most_looks_back), see};
+  some.times.pop_back();
   const Deadline deadline(seconds);
   State state = scene.initial();
   return make_integrator(method, scene.system(), with_tolerance_scales(options, scene))
