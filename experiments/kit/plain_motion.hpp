@@ -53,7 +53,7 @@ class PlainMotion {
 
   // Steps to `until` [s]; false where a massless node finds no place or `most_steps` are not
   // enough.
-  bool advance(Real until, int most_steps = 3000) {
+  bool advance(Real until, int most_steps = 30000) {
     if (!stands_) return false;
     const Real shortest = until * Real(1e-15);
     if (step_ == 0) step_ = until / 16;

@@ -25,7 +25,7 @@ class SemiImplicitEuler final : public FixedStep {
 
   Outcome step(const State& now, double h, State& next) override {
     force(now.q, f_);
-    if (!factorize(now.q, h)) return Outcome::indefinite_matrix;
+    if (!factorize(now.q, h)) return indefinite_at(now.q);
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
     if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
       return outcome;

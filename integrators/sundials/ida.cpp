@@ -79,6 +79,7 @@ class Ida final : public Stepper {
     is_lost_ = is_rough_ = false;
     is_consistent_ = !system().has_massless();
     set_rate_of_masses();
+    has_finite_rate_ = Halves(rate_.get()).v.allFinite();
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
   }
 
@@ -98,6 +99,8 @@ class Ida final : public Stepper {
   }
 
   int take_step(double t_stop, double& t) override {
+    // IDA itself takes an infinite y' for a tolerance that is too small.
+    if (!has_finite_rate_) return IDA_FIRST_RES_FAIL;
     if (!is_consistent_) {
       if (const int flag = make_consistent(t); flag < 0) return flag;
       is_consistent_ = true;
@@ -316,7 +319,7 @@ class Ida final : public Stepper {
   std::optional<Vector> tolerated_;  // absolute tolerance, with that of massless nodes
   // The system with all unknowns held but the massless ones; empty without massless nodes.
   std::optional<ConstrainedSystem> massless_;
-  bool is_consistent_ = true;
+  bool is_consistent_ = true, has_finite_rate_ = true;
   bool is_lost_ = false;   // whether no balance is left near the massless nodes
   bool is_rough_ = false;  // whether rounding moves a massless node by more than the tolerance
   OwnCounts earlier_{};    // before the last start of IDA, which clears its counts

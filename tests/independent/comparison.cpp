@@ -217,7 +217,9 @@ void compare_runs(const DrawnMotion& motion, const ReducedScene& reduced, const 
 
 DrawnMotion::DrawnMotion(const Scene& scene) : scene_(scene), end_(scene, plain_tolerance) {
   const bool is_known = end_.advance(until());
-  known_until_ = is_known ? until() : static_cast<double>(end_.state().t);
+  // A motion without massless nodes that took too many steps says nothing of where others end.
+  const bool has_place = std::ranges::all_of(scene.nodes, has_velocity);
+  known_until_ = is_known ? until() : has_place ? 0 : static_cast<double>(end_.state().t);
   if (!is_known) return;
   const std::vector<Node> nodes = nodes_at(scene, end_.state());
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -19,7 +19,7 @@ class DrawnMotion {
   const Scene& scene() const { return scene_; }
   double until() const { return *scene_.until; }
   // Up to when the motion is known [s]: `until`, or when a massless node lost its place. Zero where
-  // it has none from the start.
+  // it has none from the start, or where the motion takes too many steps.
   double known_until() const { return known_until_; }
   bool is_known() const { return known_until_ == until(); }
 

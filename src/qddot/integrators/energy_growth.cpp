@@ -8,9 +8,10 @@
 namespace qddot {
 namespace {
 
-// The number of steps between two looks at the kinetic energy, each a tenth of a step's time. Then
-// the number of such looks between two at the whole energy, each several forces' time.
-constexpr int steps_a_look = 32, looks_an_energy = 32;
+// See the class.
+constexpr double part_a_gap = 0.5, longest_gap = 128, work_an_energy = 250;
+// A state is kept, at the cost of a copy, if what is large there has grown by this factor.
+constexpr double grown = 1.2;
 constexpr double largest = 1e300;
 // [s^2]: vibrations of 1e9 to 1 rad/s.
 constexpr double shortest_way = 1e-18, longest_way = 1;
@@ -35,25 +36,42 @@ double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
 
 void EnergyGrowth::start(const State& state) {
   until_look_ = 1;
-  looks_ = 0;
+  steps_ = 1;
+  fast_ = 0;
+  next_energy_ = work_an_energy;
+  random_ = 1;
   if (!system_.has_potential()) return;
-  q_ = q_of_kinetic_ = state.q;
-  v_of_kinetic_ = state.v;
-  kinetic_ = system_.kinetic(state.v);
+  q_ = state.q;
+  const double kinetic = system_.kinetic(state.v);
+  fastest_ = {kinetic, state.q, state.v};
+  farthest_ = {0, state.q, state.v};
   lowest_ = system_.potential(state.q);
-  start_ = most_ = kinetic_ + lowest_;
+  start_ = most_ = kinetic + lowest_;
 }
 
-void EnergyGrowth::look(const State& state) {
-  until_look_ = steps_a_look;
+// A random number in [0, 2), of mean 1.
+double EnergyGrowth::drawn() {
+  random_ = 1664525 * random_ + 1013904223;  // Press et al., Numerical Recipes, 2nd ed., 7.1
+  return std::ldexp(static_cast<double>(random_), -31);
+}
+
+void EnergyGrowth::look(const State& state, double work) {
+  const double gap = std::min({part_a_gap * steps_, longest_gap, work_an_energy * steps_ / work});
+  until_look_ = std::max(1, static_cast<int>(std::lround(drawn() * gap)));
+  steps_ += until_look_;
   if (!system_.has_potential()) return;
-  const double kinetic = system_.kinetic(state.v);
-  if (kinetic > 2 * kinetic_) {
-    kinetic_ = kinetic;
-    q_of_kinetic_ = state.q;
-    v_of_kinetic_ = state.v;
-  }
-  if (++looks_ % looks_an_energy == 0) see(state.q, state.v);
+  propose(fastest_, system_.kinetic(state.v), state);
+  propose(farthest_, (state.q - q_).squaredNorm(), state);
+  if (work < next_energy_) return;
+  see(state.q, state.v);
+  next_energy_ = work + drawn() * work_an_energy;
+}
+
+void EnergyGrowth::propose(Candidate& candidate, double size, const State& state) {
+  if (!(size > grown * candidate.size)) return;
+  candidate.size = size;
+  candidate.q = state.q;
+  candidate.v = state.v;
 }
 
 void EnergyGrowth::see(const Vec& q, const Vec& v) {
@@ -67,24 +85,26 @@ double EnergyGrowth::rounding() {
   const double potential = system_.potential(q_);
   double most = machine_epsilon * std::abs(potential);
   for (const int period : {1, 2, 3}) {
-    q_of_kinetic_ = q_;
+    Vec& near = fastest_.q;  // scratch from here on
+    near = q_;
     for (Index i = 0; i < q_.size(); ++i) {
-      q_of_kinetic_[i] *= 1 + (i % period == 0 ? 4 : -4) * machine_epsilon;
+      near[i] *= 1 + (i % period == 0 ? 4 : -4) * machine_epsilon;
     }
-    most = std::max(most, std::abs(system_.potential(q_of_kinetic_) - potential));
+    most = std::max(most, std::abs(system_.potential(near) - potential));
   }
   return 4 * most;
 }
 
 double EnergyGrowth::factor(const State& state) {
   if (!system_.has_potential()) return 1;
-  see(q_of_kinetic_, v_of_kinetic_);
+  see(fastest_.q, fastest_.v);
+  see(farthest_.q, farthest_.v);
   see(state.q, state.v);
   const double gained = most_ - start_;
   double own = start_ - lowest_;
   if (gained <= own) return own > 0 ? 1 + gained / own : 1;
   // A run that grew from its first step on has no other energy of its own.
-  own = std::max(own, start_ - lowest_ahead(system_, q_, q_of_kinetic_, v_of_kinetic_));
+  own = std::max(own, start_ - lowest_ahead(system_, q_, fastest_.q, fastest_.v));
   const double unsure = rounding();
   if (gained <= unsure + 4 * machine_epsilon * std::abs(most_)) return 1;
   const double growth = 1 + gained / std::max(own, unsure);

@@ -26,6 +26,9 @@ constexpr double balance_tolerance = 1e-6;
 // more.
 constexpr double solve_tolerance = 1e-4;
 
+// The work of a linear solve and of a factorisation, in forces: less than the least measured.
+constexpr std::int64_t forces_a_solve = 2, forces_a_factorization = 20;
+
 // The names of outcomes and the advice on them, in the order of Outcome.
 struct OutcomeWords {
   std::string_view name, advice;
@@ -174,6 +177,12 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   return {outcome, state.t, counts_, seconds_, words_on(outcome), growth, failed_step_};
 }
 
+double Integrator::work() const {
+  return static_cast<double>(std::max(counts_.force_evaluations, counts_.steps) +
+                             forces_a_solve * counts_.solves +
+                             forces_a_factorization * counts_.factorizations);
+}
+
 Outcome Integrator::check_solve(SolveOutcome solution) {
   if (solution == SolveOutcome::found) return Outcome::reached_end;
   if (solution == SolveOutcome::indefinite) return Outcome::indefinite_matrix;
@@ -188,7 +197,12 @@ Outcome Integrator::check_step(const State& from, const State& to) {
 
 Outcome Integrator::check_step(const State& from, const State& to, double squared_speed) {
   if (std::isnan(squared_speed)) return Outcome::not_finite;
-  if (!(squared_speed < largest_speed_squared)) return Outcome::diverged;
+  if (!(squared_speed < largest_speed_squared)) {
+    // An infinite force makes any speed infinite.
+    Vec f(system_.size());
+    system_.force(from.q, f);
+    return f.allFinite() ? Outcome::diverged : Outcome::not_finite;
+  }
   if (validity_) {
     if (const auto t = validity_->end_of_validity(from, to)) {
       slack_at_ = *t;
@@ -202,6 +216,13 @@ Outcome Integrator::check_step(const State& from, const State& to, double square
     return Outcome::went_slack;
   }
   return Outcome::reached_end;
+}
+
+Outcome Integrator::indefinite_at(const Vec& q) {
+  const auto stiffness_at = [&](const Vec& at, SymmetricMatrix& k) { stiffness(at, k); };
+  if (!balance_ || balance_->are_held_at(q, stiffness_at)) return Outcome::indefinite_matrix;
+  slack_at_ = reached();
+  return Outcome::went_slack;
 }
 
 std::string Integrator::words_on(Outcome outcome) const {

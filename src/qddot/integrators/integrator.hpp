@@ -164,11 +164,16 @@ class Integrator {
   Outcome check_step(const State& from, const State& to, double squared_speed);
   // Whether check_step() looks at more than the size of the velocities.
   bool checks_velocities() const { return validity_; }
+  // The outcome of a run that ends because its matrix at q (n) is not positive definite:
+  // went_slack if springs do not hold a massless node there, else indefinite_matrix.
+  Outcome indefinite_at(const Vec& q);
+  // Call with |v|^2 of a state that will be accepted, if it is known; note() then looks closer.
+  void see_speed(double squared) { growth_.see_speed(squared); }
   // Whether note() reads the velocities of the next state.
   bool looks_next() const { return growth_.looks_next() || shows_steps_; }
   // Call with each state that is accepted.
   void note(const State& state) {
-    growth_.note(state);
+    if (growth_.is_due()) growth_.look(state, work());
     if (shows_steps_) shown_steps_(state);
     reached_.store(state.t, std::memory_order_relaxed);
   }
@@ -222,6 +227,8 @@ class Integrator {
   friend class Parts;  // runs several integrators as one
 
   Outcome run(State& state, double t_end, const Observer& observer);
+  // The work of the run so far, in forces.
+  double work() const;
   // The energy growth in the run up to `state`.
   virtual double energy_growth(const State& state) { return growth_.factor(state); }
 

@@ -40,6 +40,14 @@ class MasslessBalance {
     return to_->is_stable && have_followed(to.t - from.t);
   }
 
+  // Whether massless nodes at q (n), balanced or not, are held in every direction. For the end of a
+  // run: forgets the last step.
+  template <class Stiffness>
+  bool are_held_at(const Vec& q, const Stiffness& stiffness) {
+    stiffness(q, to_->k);
+    return factorize(*to_);
+  }
+
  private:
   struct Place {
     Vec q, f;

@@ -20,7 +20,40 @@ using SquaredLength = std::array<double, 7>;
 // is none.
 std::optional<double> first_below(const SquaredLength& c, double bound);
 
-// The springs of a network that hold in tension only (Holds::in_tension).
+// The part of a rest length by which rounding may make a spring shorter that is drawn at it.
+constexpr double forgiven = 1e-12;
+
+// The motion of a spring's length l at some time.
+struct LengthMotion {
+  double length = 0, rate = 0, acceleration = 0;  // l [m], l' [m/s], l'' [m/s^2]
+  double turning = 0;                             // the part of l'' by which the spring turns
+};
+
+// The length of a spring in a step that does not resolve its vibration w [rad/s]. It vibrates about
+// the place at which the forces of the start hold it, l + l''/w^2. In the first turn this place may
+// stay; else it moves straight to that of the end, which may be anywhere if it is not resolved. So
+// this is the motion of the system from the start on, not as the method computes it.
+//
+// Methods of order one have velocities of the size h turning/2 along a spring that only turns. A
+// rate that is common to both ends, and that the lengths do not show, is not counted up to twice
+// that, and up to half of the speed across.
+class Swing {
+ public:
+  Swing(const LengthMotion& from, const LengthMotion& to, double w, double h);
+  // The part of the step after which it is first shorter than `bound` [m]; nothing if it never is.
+  std::optional<double> first_slack(double bound) const;
+  double last() const { return last_; }  // the length at the end [m]
+
+ private:
+  std::optional<double> first_slack(double bound, double slope, double longest_turn) const;
+
+  double turn_;                           // h w
+  double first_, last_, middle_, slope_;  // `slope_`: the change of the middle in the step
+  double cosine_, rate_;                  // l - middle, and l'/w, at the start
+};
+
+// The springs of a network that hold in tension only (Holds::in_tension), and series of springs
+// that are one such spring (MasslessSeries).
 template <int D>
 class InTension {
  public:
@@ -30,6 +63,7 @@ class InTension {
     int i, j;
     Point place;
     SpringLaw law;
+    bool is_series = false;  // of springs that stand on their own; see MasslessSeries
   };
 
   void add(const Spring& spring) { springs_.push_back(spring); }
@@ -43,26 +77,48 @@ class InTension {
   }
 
   // The first time [s] between two states at which a spring gets shorter than its rest length;
-  // nothing if none does. Each d follows the cubic that has its values and rates at both ends.
+  // nothing if none does. In a step that resolves the spring's vibration, h w <= 2, each d follows
+  // the cubic that has its values and rates at both ends. For longer steps see Swing; these need
+  // the system's force(q, f).
+  template <class Force>
   std::optional<double> first_slack(const Layout<D>& layout, const Vec& mass, const State& from,
-                                    const State& to) const {
-    if (springs_.empty()) return {};
+                                    const State& to, const Force& force) const {
+    const double h = to.t - from.t;
+    Vec pull_from, pull_to;
     std::optional<double> first;
     for (const Spring& spring : springs_) {
-      const SquaredLength length = path(layout, mass, spring, from, to);
-      std::optional<double> s = first_below(length, bound(spring));
-      // If the spring was too short at the start already, only its end counts.
-      if (s == 0 && length.back() >= bound(spring)) s.reset();
+      const double w = frequency(layout, mass, spring);
+      std::optional<double> s;
+      double last;  // the length at the end, squared
+      if (h * w > longest_resolved && std::isfinite(w)) {
+        if (pull_from.size() == 0) {
+          force(from.q, pull_from);
+          force(to.q, pull_to);
+        }
+        const Swing swing(motion(layout, mass, spring, from, pull_from),
+                          motion(layout, mass, spring, to, pull_to), w, h);
+        s = swing.first_slack((1 - forgiven) * spring.law.rest_length);
+        last = swing.last() * swing.last();
+      } else {
+        const SquaredLength length = path(layout, spring, from, to, std::isfinite(w));
+        s = first_below(length, bound(spring));
+        last = length.back();
+      }
+      // If the spring was too short at the start already, only its end counts. A series that is not
+      // straight is no such spring.
+      if (s == 0 && (last >= bound(spring) || spring.is_series)) s.reset();
       if (s && (!first || *s < *first)) first = s;
     }
     if (!first) return {};
-    return from.t + *first * (to.t - from.t);
+    return from.t + *first * h;
   }
 
  private:
-  // A spring drawn at its rest length may be shorter by rounding.
+  // h w up to which the rates at both ends show the motion between.
+  static constexpr double longest_resolved = 2;
+
   static double bound(const Spring& spring) {
-    const double l = (1 - 1e-12) * spring.law.rest_length;
+    const double l = (1 - forgiven) * spring.law.rest_length;
     return l * l;
   }
   static Point difference(const Layout<D>& layout, const Spring& spring, const ConstVec& q) {
@@ -74,28 +130,37 @@ class InTension {
     return difference(layout, spring, v);
   }
 
-  // The cubic resolves a vibration along the spring, w^2 = k (1/m_i + 1/m_j), if h w <= 2. For a
-  // longer step, the rates of l at both ends are corrected twice. First they lose their common part
-  // that the lengths do not show: it is a first-order error of the velocities. Then they are scaled
-  // by 4/(h w): a vibration of speed u has the amplitude u/w, but the cubic reaches u h/4. If h w >
-  // 8, the vibration turns more than once in a step, and the ends give no information about it.
-  static SquaredLength path(const Layout<D>& layout, const Vec& mass, const Spring& spring,
-                            const State& from, const State& to) {
-    const double h = to.t - from.t;
+  // The frequency [rad/s] of the spring alone; infinite at a massless node.
+  static double frequency(const Layout<D>& layout, const Vec& mass, const Spring& spring) {
+    return std::sqrt(spring.law.stiffness *
+                     (per_mass(layout, mass, spring.i) + per_mass(layout, mass, spring.j)));
+  }
+
+  // The length's motion at one end of a step, by the system's forces there.
+  static LengthMotion motion(const Layout<D>& layout, const Vec& mass, const Spring& spring,
+                             const State& state, const Vec& pull) {
+    const Point d = difference(layout, spring, state.q), v = rate(layout, spring, state.v);
+    Vec a = pull;
+    for (Index i = 0; i < a.size(); ++i) a[i] = mass[i] > 0 ? a[i] / mass[i] : 0;
+    const double l = d.norm();
+    if (!(l > 0)) return {};
+    const double along = v.dot(d) / l, turning = (v.squaredNorm() - along * along) / l;
+    const double pull_along = rate(layout, spring, a).dot(d) / l;
+    return {l, along, pull_along + turning, turning};
+  }
+
+  // The squared length on the cubic; on a straight line if the rates say nothing, as at a massless
+  // node.
+  static SquaredLength path(const Layout<D>& layout, const Spring& spring, const State& from,
+                            const State& to, bool uses_rates) {
     const Point a = difference(layout, spring, from.q), d = difference(layout, spring, to.q);
-    Point a_rate = rate(layout, spring, from.v), d_rate = rate(layout, spring, to.v);
-    const double hw = h * std::sqrt(spring.law.stiffness * (per_mass(layout, mass, spring.i) +
-                                                            per_mass(layout, mass, spring.j)));
-    const double first = a.norm(), last = d.norm();
-    if (hw > 2 && first > 0 && last > 0) {
-      const double r = a_rate.dot(a) / first, s = d_rate.dot(d) / last;
-      const double common = (r + s) / 2 - (last - first) / h,
-                   share = hw > 8 ? 0 : std::min(1.0, 4 / hw);
-      a_rate -= (r - share * (r - common)) / first * a;
-      d_rate -= (s - share * (s - common)) / last * d;
+    const double third = (to.t - from.t) / 3;
+    Point b = a + (d - a) / 3, c = d - (d - a) / 3;
+    if (uses_rates) {
+      b = a + third * rate(layout, spring, from.v);
+      c = d - third * rate(layout, spring, to.v);
     }
     // The cubic's Bernstein coefficients, and their products.
-    const Point b = a + h / 3 * a_rate, c = d - h / 3 * d_rate;
     return {a.dot(a),
             a.dot(b),
             (2 * a.dot(c) + 3 * b.dot(b)) / 5,

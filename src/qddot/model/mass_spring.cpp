@@ -9,6 +9,7 @@
 #include "qddot/model/kernels/springs_by_node.hpp"
 #include "qddot/model/kernels/stiffness_kernel.hpp"
 #include "qddot/model/layout.hpp"
+#include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
 #include "qddot/model/spring_lists.hpp"
 
@@ -175,7 +176,10 @@ class MassSpring final : public CapableSystem, public SplitForces {
 
   bool is_valid_at(const ConstVec& q) const override { return in_tension_.holds_at(layout_, q); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
-    return in_tension_.first_slack(layout_, mass(), from, to);
+    return in_tension_.first_slack(layout_, mass(), from, to, [this](const Vec& q, Vec& f) {
+      f.resize(size());
+      force(q, f);
+    });
   }
 
  private:
@@ -234,6 +238,10 @@ class MassSpring final : public CapableSystem, public SplitForces {
         in_tension_.add({anchor.i, -1, point(anchor.point), anchor.law});
       }
     }
+    for (const MasslessSeries& series : massless_series(network)) {
+      const Point place = series.j < 0 ? point(series.point) : Point(Point::Ones());
+      in_tension_.add({series.i, series.j, place, series.law, true});
+    }
   }
 
   // Adds the springs that the kernel of K leaves out.
@@ -245,7 +253,7 @@ class MassSpring final : public CapableSystem, public SplitForces {
 
   Layout<D> layout_;
   SpringLists<D> springs_;
-  InTension<D> in_tension_;              // springs that hold in tension only, a second time
+  InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
   double constant_energy_;

@@ -79,6 +79,7 @@ Outcome FixedStep::take_steps(double t_stop) {
     is_complete_ = next_is_complete_;
     taken_ = i;
     ++counts().steps;
+    see_speed(squared_speed_there);
     if (looks_next()) complete_now(true);
     note(now_);
   }

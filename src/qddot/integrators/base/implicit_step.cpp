@@ -199,7 +199,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
     return matrix_.factorize_positive(1, s, k_);
   });
   if (!is_finite) return Outcome::not_finite;
-  if (!is_positive) return Outcome::indefinite_matrix;
+  if (!is_positive) return indefinite_at(x_);
   factorized_s_ = s;
   return Outcome::reached_end;
 }
