@@ -9,10 +9,13 @@ namespace qddot {
 namespace {
 
 // See the class.
-constexpr double part_a_gap = 0.5, longest_gap = 128, work_an_energy = 250;
+constexpr double part_a_gap = 0.5, longest_gap = 256, work_an_energy = 500;
 // A state is kept, at the cost of a copy, if what is large there has grown by this factor.
 constexpr double grown = 1.2;
 constexpr double largest = 1e300;
+// Beyond |v| = 1e20 m/s a run is about to fail, and its last states had better be left alone.
+constexpr double hopeless_squared = 1e40;
+constexpr int never = 1 << 30;
 // [s^2]: vibrations of 1e9 to 1 rad/s.
 constexpr double shortest_way = 1e-18, longest_way = 1;
 
@@ -47,6 +50,16 @@ void EnergyGrowth::start(const State& state) {
   farthest_ = {0, state.q, state.v};
   lowest_ = system_.potential(state.q);
   start_ = most_ = kinetic + lowest_;
+}
+
+void EnergyGrowth::look_sooner(double squared_speed) {
+  if (squared_speed >= hopeless_squared) {
+    until_look_ = never;
+    return;
+  }
+  fast_ = 2 * squared_speed;
+  steps_ -= until_look_ - 1;
+  until_look_ = 1;
 }
 
 // A random number in [0, 2), of mean 1.

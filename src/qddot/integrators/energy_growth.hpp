@@ -14,10 +14,10 @@ namespace qddot {
 //   - A look takes the kinetic energy and the distance from the start, some 0.2 of a step of the
 //     cheapest method. The E of the states where they were largest are computed at the end. Looks
 //     are after random steps, so that no oscillation is in step with them. The mean gap is half of
-//     the steps so far and 128 at most. So a run of n > 256 steps has some 12 + n/128 of them.
+//     the steps so far and 256 at most. So a run of n > 512 steps has some 14 + n/256 of them.
 //   - Methods of fixed steps know each step's speed. Looks are also where its square has doubled.
 //   - E itself costs about a force. It is computed each time that the run has done the work of some
-//     250, also at random: 0.4 % of the run.
+//     500, also at random: 0.2 % of the run.
 class EnergyGrowth {
  public:
   // Borrows the system, which must outlive it.
@@ -27,11 +27,7 @@ class EnergyGrowth {
   void start(const State& state);
   // Call with |v|^2 of the next state.
   void see_speed(double squared) {
-    if (squared > fast_ && squared < hopeless) {
-      fast_ = 2 * squared;
-      steps_ -= until_look_ - 1;
-      until_look_ = 1;
-    }
+    if (squared > fast_) look_sooner(squared);
   }
   // Whether is_due() will be true at the next state.
   bool looks_next() const { return until_look_ == 1; }
@@ -47,9 +43,7 @@ class EnergyGrowth {
     double size = 0;
     Vec q, v;
   };
-  // Beyond |v| = 1e20 m/s the run is about to fail, and its state had better be left alone.
-  static constexpr double hopeless = 1e40;
-
+  void look_sooner(double squared_speed);
   void propose(Candidate& candidate, double size, const State& state);
   void see(const Vec& q, const Vec& v);
   double rounding();
