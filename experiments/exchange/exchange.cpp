@@ -6,8 +6,8 @@
 //
 //  1. w is the highest frequency at the start that the stiff springs (Scene::stiff_above) make by
 //     themselves, without the soft ones. In scene fpu it is its parameter `frequency`. A method's
-//     step is h = (h w)/w, all of the way. So the motion is seen at ends of steps only: random ones,
-//     about one in each --every.
+//     step is h = (h w)/w, all of the way. So the motion is seen at ends of steps only: random
+//     ones, about one in each --every.
 //  2. The reference is Kahan and Li's composition of order 8 at h w = 0.1. Its distance to Dormand
 //     and Prince's Nystrom pair 12(10) at rtol = 1e-12 certifies it.
 //  3. exchange.csv has the oscillatory energy of each stiff spring over time (stiff_energies.hpp),

@@ -337,7 +337,7 @@ class Advice(Programs):
         # Which check is the cheaper one is decided by measured times.
         self.assertIn(origin["error_estimate_kind"], ("compared", "refined"))
         kept = [origin[key] for key in ("is_reached", "accuracy_of", "advised_by", "horizon")]
-        self.assertEqual(kept, [True, "positions", "forecast", None])
+        self.assertEqual(kept, [True, "positions", "tolerance", None])
         self.near(sum(origin["seconds_by_phase"].values()) / origin["seconds"], 1, 1e-9)
         self.assertEqual(len(table("energy.csv")), 5)
         # The same end as by the method that it names.

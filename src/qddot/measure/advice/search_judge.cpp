@@ -36,13 +36,13 @@ std::int64_t Search::forces_within(double work) const {
       std::max(100.0, work / (call + static_cast<double>(stage_.model().system().size()))));
 }
 
-// Repeats the judge from a start one rounding away, in all that was drawn.
-// What the judge's own error explains is in its bound already.
+// Repeats the judge from a start one rounding away, in all that was drawn. The distance that the
+// judge's own error explains is in its bound already.
 void Search::condition(const Trial& judge) {
   const Trial& twin = run(*judge.method, judge.value, {}, true);
   if (!twin.reached_end()) return;
-  conditioning_ =
-      Conditioning{.effect = distance(judge, twin), .differences = stage_.distances(judge, twin)};
+  conditioning_ = Conditioning{.effect = beyond_own_error(judge, distance(judge, twin)),
+                               .differences = stage_.distances(judge, twin)};
   condition_symmetry(judge);
 }
 
@@ -57,7 +57,8 @@ void Search::condition_symmetry(const Trial& judge) {
       judge, {.seconds = seconds_left(), .forces = forces_within(much_work)});
   if (left.empty()) return;
   if (!conditioning_) conditioning_.emplace();
-  conditioning_->leaves_by = stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back();
+  conditioning_->leaves_by = beyond_own_error(
+      judge, stage_.of() == AccuracyOf::path ? std::ranges::max(left) : left.back());
   conditioning_->differences_left = left;
 }
 
@@ -161,7 +162,6 @@ bool Search::judge_in_closed_form(double accuracy) {
       bound_of_w_ * stage_.until() * (slow > 0 ? std::max(1.0, bound_of_w_ / slow) : 1);
   constexpr double of_rest = 64;  // roundings of sums over the modes
   const double error = 4 * machine_epsilon * (rests_ ? of_rest : 1 + phase);
-  if (error > part_of_judge) return false;
   judges_[&trial] = {error, nullptr, false};
   condition(trial);
   if (stage_.is_reduced_by_symmetry()) {
@@ -172,16 +172,17 @@ bool Search::judge_in_closed_form(double accuracy) {
                              {.forces = forces_within(much_work)});
     if (other.reached_end()) condition_symmetry(other);
   }
-  return true;
+  return error <= accuracy;
 }
 
 // The forces that an implicit run may evaluate if it is to take a part of the time of Verlet's
-// method. The time of a step is that of its first steps. Zero if these already take too long.
+// method. The time of a step is that of its first steps. Zero if these already take too long, and
+// for forces of the caller's own: a long implicit step may leap over a core that repels.
 std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
   constexpr double fewest_steps = 2000, part = 0.3;
   constexpr std::int64_t first_steps = 12;
   const auto all = with_error_control(true, accuracy);
-  if (steps_of_verlet() < fewest_steps || all.empty()) return 0;
+  if (!stage_.has_springs() || steps_of_verlet() < fewest_steps || all.empty()) return 0;
   const Trial& first = run(*all.front(), accuracy, {.forces = first_steps});
   const double a_force = first.seconds / static_cast<double>(first_steps);
   const double worth = part * steps_of_verlet() * seconds_of_force(stage_.model()) / a_force;

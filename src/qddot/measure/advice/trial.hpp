@@ -65,6 +65,8 @@ class Stage {
   // Whether nothing moves by more than the rounding of its positions.
   bool rests() const;
 
+  // Whether the forces are those of springs that were drawn, and not of a caller's own system.
+  bool has_springs() const { return drawn_ && !drawn_->springs.empty(); }
   // Whether a dimension or a mirror was reduced of the scene that was drawn.
   bool is_reduced_by_symmetry() const;
   // Repeats the trial with all drawn nodes in all drawn dimensions, from a start that is one
