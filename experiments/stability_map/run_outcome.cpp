@@ -46,7 +46,8 @@ std::vector<double> looks(const Options& options, double until) {
   std::vector<double> times;
   const double h =
       options.step_size > 0 ? options.step_size : until / (watched_steps + samples_more);
-  const double steps = std::clamp(std::round(until / h), 1.0, most_steps);
+  // A run of most_steps can't be taken.
+  const double steps = std::clamp(std::round(until / h), 1.0, most_steps / 2);
   const double watched = std::min<double>(steps, watched_steps);
   for (double n = 1; n <= watched; ++n) times.push_back(n * h);
   for (const double n : random_step_times(1, steps, samples_more)) {

@@ -87,7 +87,11 @@ ExchangeRun exchange_run(const Excitation& excitation, const Method& method, dou
 
 std::vector<double> looks(const Excitation& excitation, double h) {
   const auto count = static_cast<std::int64_t>(std::ceil(excitation.until / excitation.every));
-  return random_step_times(h, excitation.until, count);
+  // No look at a shorter last step.
+  constexpr double rounded = 1 + 1e-12;
+  const double whole = std::floor(excitation.until / h * rounded) * h;
+  return random_step_times(h, whole > 0 ? std::min(whole, excitation.until) : excitation.until,
+                           count);
 }
 
 CertifiedCourse certified_course(const Excitation& excitation, const Recall& recall) {
