@@ -36,7 +36,7 @@ struct HardResult {
     return has_truth() && of != "energy" && conditioning > 3 * accuracy;
   }
   bool is_judged() const { return is_well_posed() && is_claimed; }
-  // What the true motion does not know is counted in favour of the answer.
+  // The uncertainty of the true motion is counted in favour of the answer.
   bool is_within(double bound) const { return error - conditioning <= bound; }
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HardResult, number, name, kind, of, unknowns, until, accuracy,

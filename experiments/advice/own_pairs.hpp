@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "experiments/kit/plain_model.hpp"
 #include "qddot/model/system.hpp"
 #include "qddot/scene/scene.hpp"
 
@@ -65,18 +66,8 @@ class PlainPairs {
       : scene_(std::move(scene)), pairs_(std::move(pairs)) {}
 
   const Scene& scene() const { return scene_; }
-  Vector positions() const {
-    Vector x;
-    for (const Node& node : scene_.nodes)
-      x.insert(x.end(), node.position.begin(), node.position.end());
-    return x;
-  }
-  Vector velocities() const {
-    Vector v;
-    for (const Node& node : scene_.nodes)
-      v.insert(v.end(), node.velocity.begin(), node.velocity.end());
-    return v;
-  }
+  Vector positions() const { return plain_positions<Real>(scene_); }
+  Vector velocities() const { return plain_velocities<Real>(scene_); }
   bool place_massless(Vector&) const { return true; }
   void acceleration(const Vector& x, Vector& a) const {
     a.assign(x.size(), 0);

@@ -21,6 +21,23 @@ inline Quadruple plain_root(Quadruple x) {
   return s;
 }
 
+// The start of a scene in Real numbers, three coordinates a node; pinned nodes rest.
+template <class Real>
+std::vector<Real> plain_positions(const Scene& scene) {
+  std::vector<Real> x;
+  for (const Node& node : scene.nodes)
+    x.insert(x.end(), node.position.begin(), node.position.end());
+  return x;
+}
+template <class Real>
+std::vector<Real> plain_velocities(const Scene& scene) {
+  std::vector<Real> v;
+  for (const Node& node : scene.nodes) {
+    for (const double c : node.velocity) v.push_back(node.pinned ? 0 : c);
+  }
+  return v;
+}
+
 // The equations of motion of a scene as drawn, without reductions and independent of the model
 // under test. x and v are positions and velocities of all nodes, node after node, three coordinates
 // each. Forces are summed one spring after the other. Real is double, long double or Quadruple.
@@ -38,19 +55,8 @@ class PlainModel {
   const Scene& scene() const { return scene_; }
   bool has_massless() const { return !massless_.empty(); }
 
-  Vector positions() const {
-    Vector x;
-    for (const Node& node : scene_.nodes)
-      x.insert(x.end(), node.position.begin(), node.position.end());
-    return x;
-  }
-  Vector velocities() const {
-    Vector v;
-    for (const Node& node : scene_.nodes) {
-      for (const double c : node.velocity) v.push_back(node.pinned ? 0 : c);
-    }
-    return v;
-  }
+  Vector positions() const { return plain_positions<Real>(scene_); }
+  Vector velocities() const { return plain_velocities<Real>(scene_); }
 
   // f = -dV/dx [N] of springs alone.
   void spring_forces(const Vector& x, Vector& f) const {

@@ -11,7 +11,7 @@ namespace qddot::sundials {
 // 67-75): 13 stages, order 8, errors by order 7. ARKODE's own pair of that order, Fehlberg's, has
 // the error estimate 41/840 h (k_1 + k_11 - k_12 - k_13) with c_1 = c_12 and c_11 = c_13. That is
 // zero for y' = F(t), whatever F is (Hairer, Norsett and Wanner, Solving ODEs I, section II.5).
-// Where a mass flies fast past another, its force is such a function of time.
+// The force on a mass that flies fast past another is such a function of time.
 inline ButcherTable prince_dormand_8_7() {
   constexpr int s = 13;
   std::vector<double> c = {0,

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
 #include "experiments/kit/plain_motion.hpp"
+#include "qddot/scene/reduce/reduced_scene.hpp"
 
 namespace qddot {
 inline namespace tests {

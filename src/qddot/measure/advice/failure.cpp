@@ -84,21 +84,25 @@ Failure why_not(const Search& search, double accuracy, const std::string& stoppe
   const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
   const bool none_reached = std::ranges::none_of(search.trials(), &Trial::reached_end);
   const auto& conditioning = search.conditioning();
-  const auto slack = std::ranges::find_if(search.trials(), [](const Trial& trial) {
-    return trial.summary.outcome == Outcome::went_slack;
-  });
+  // Steps that do not resolve a motion may find a cable slack that is taut: the finest tolerance
+  // decides.
+  const Trial* finest = nullptr;
+  for (const Trial& trial : search.trials()) {
+    if (trial.method->knob == Knob::rtol && (!finest || trial.value <= finest->value))
+      finest = &trial;
+  }
   // An effect this large leaves no room for a run's own error.
   constexpr double much = 0.5;
-  failure.is_rounding = conditioning && search.stage().of() != AccuracyOf::energy &&
-                        std::max(conditioning->effect, conditioning->leaves_by) > much * accuracy;
+  failure.is_rounding =
+      conditioning && std::max(conditioning->effect, conditioning->leaves_by) > much * accuracy;
   if (const auto parted = parting(search); parted && failure.is_rounding) {
     failure.horizon = parted->horizon;
     failure.lyapunov = parted->lyapunov;
   }
   if (!stopped_by.empty()) {
     failure.why = fmt::format("{}; {}", stopped_by, reached);
-  } else if (slack != search.trials().end()) {
-    failure.why = slack->summary.message;
+  } else if (finest && finest->summary.outcome == Outcome::went_slack) {
+    failure.why = finest->summary.message;
   } else if (failure.is_rounding) {
     failure.why = rounding_in_words(failure, search, accuracy);
     if (best && !(failure.horizon <= search.stage().until())) failure.why += "; " + reached;

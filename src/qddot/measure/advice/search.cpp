@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -48,11 +49,15 @@ Trial& Search::run(const Method& method, double value, const Limits& limits, boo
 
 void Search::measure_by(const Trial& trial) {
   stage_.measure_by(trial);
+  distances_.clear();
   rests_ = stage_.rests();
 }
 
 double Search::distance(const Trial& one, const Trial& other) const {
-  return stage_.distance(one, other);
+  const auto [place, is_new] =
+      distances_.try_emplace(std::minmax(&one, &other, std::less<const Trial*>()));
+  if (is_new) place->second = stage_.distance(one, other);
+  return place->second;
 }
 
 // The largest distance in the second half. Two runs may meet at the end by chance.

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <deque>
-#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "qddot/measure/advice/forecast.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -40,7 +40,9 @@ struct Conditioning {
 //  3. Runs that a forecast expects to be faster are made and compared with the judge.
 //
 // All decisions that lead to a judge or to its refusal count work, so that they are the same on
-// every machine at any load. Times only choose among runs that are known to be accurate enough.
+// every machine at any load; with one exception. An implicit judge is tried first if its first
+// steps take little time beside those of Verlet's method. Times also choose among runs that are
+// known to be accurate enough.
 class Search {
  public:
   // Borrows the model, which must have unknowns and K, and the scene that it is the reduction of,
@@ -65,8 +67,6 @@ class Search {
 
   // Whether a forecast chose the judge, and not tolerances.
   bool is_judged_by_forecast() const { return is_judged_by_forecast_; }
-  // Whether nothing moves by more than the rounding of its positions.
-  bool rests() const { return rests_; }
 
   const Stage& stage() const { return stage_; }
   // Empty if no forecast was needed.
@@ -99,7 +99,7 @@ class Search {
     return conditioning_ && std::max(conditioning_->effect, conditioning_->leaves_by) > accuracy;
   }
 
-  const Trial* survey(std::int64_t most_forces);
+  const Trial* survey();
   void begin_forecast(const std::vector<State>& path, double w);
   bool may_forecast(const Trial& trial);
   void learn();
@@ -124,6 +124,7 @@ class Search {
   std::optional<Conditioning> conditioning_;
   std::deque<Trial> trials_;
   std::map<const Trial*, Judged> judges_;
+  mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // by these scales
   const Trial* finest_ = nullptr;  // of the last runs with error control that gave no judge
   bool rests_ = false, is_judged_by_forecast_ = false;
 };

@@ -54,7 +54,7 @@ double growth_of_frequency(const ReducedScene& model, const std::vector<State>& 
 
 // The first run: Verlet's method near its stability limit, with shorter steps if it fails or its
 // energy grows.
-const Trial* Search::survey(std::int64_t most_forces) {
+const Trial* Search::survey() {
   constexpr double below_limit = 0.9, shorter = 0.6, grows = 2;
   constexpr int most_attempts = 10;
   const ReducedScene& model = stage_.model();
@@ -65,7 +65,7 @@ const Trial* Search::survey(std::int64_t most_forces) {
   if (w_start_ < hardly_vibrates * bound_of_w_) w_start_ = bound_of_w_;
   double steps = std::max(8.0, std::ceil(stage_.until() * w_start_ / (2 * below_limit)));
   for (int attempt = 0; attempt < most_attempts; ++attempt, steps = std::ceil(steps / shorter)) {
-    const Trial& trial = run(*method, stage_.until() / steps, {.forces = most_forces});
+    const Trial& trial = run(*method, stage_.until() / steps, {});
     if (trial.reached_end() && trial.summary.energy_growth < grows) return &trial;
     const Outcome outcome = trial.summary.outcome;
     if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) return nullptr;
@@ -124,12 +124,15 @@ void Search::learn() {
 // A run chosen to have a part of the accuracy as its error, and a run that checks it; the check
 // begins one rounding away. Each distance corrects the forecast for the next pair.
 bool Search::judge_by_forecast(double accuracy) {
-  const Trial* first = survey(0);
+  const Trial* first = survey();
   if (!first) return false;
   measure_by(*first);
   const double steps = stage_.until() / first->value;
   const double growth = growth_of_frequency(stage_.model(), first->path, bound_of_w_);
-  begin_forecast(first->path, std::min(w_start_ * growth, 2.04 * steps / stage_.until()));
+  // The bound of w_max may grow more than w_max does. The run was stable, so that its h w_max was
+  // hardly above 2.
+  constexpr double hardly_above = 2.04;
+  begin_forecast(first->path, std::min(w_start_ * growth, hardly_above * steps / stage_.until()));
   constexpr int most_rounds = 4;
   const Trial* tried = first;
   for (int round = 0; round < most_rounds && seconds_left() > 0; ++round) {

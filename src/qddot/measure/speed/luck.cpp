@@ -17,7 +17,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 // fall by some percent more or less. Errors of chance seldom do so twice.
 constexpr double least_fall = 0.75, largest_fall = 1.25;
 
-// What a run tells of the coarser ones.
+// The evidence that a run gives on the coarser ones.
 struct Run {
   std::size_t point;
   double value;           // of the knob

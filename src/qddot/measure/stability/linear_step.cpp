@@ -88,7 +88,7 @@ double unit(double size) { return std::exp2(std::floor(std::log2(size))); }
 std::vector<Complex> found_roots(Responses y, double noise) {
   if (y.size() > 1 && is_without_memory(y, noise)) return pair_of_roots(step_without_memory(y));
   if (y.size() <= steps_observed) return {std::numeric_limits<double>::infinity()};
-  // Of a vibration that dies or grows at once, the responses to all steps shall count.
+  // The responses to all steps shall count, also if the vibration dies or grows at once.
   const double change = std::pow(y.back().norm() / y.front().norm(), 1.0 / steps_observed);
   const double factor = std::isnormal(change) ? unit(change) : 1;
   for (std::size_t n = 0; n < y.size(); ++n) y[n] *= std::pow(factor, -static_cast<double>(n));
