@@ -218,13 +218,14 @@ def main():
     parser.add_argument("--out", required=True, help="the folder for the results")
     parser.add_argument("--point-limit", type=float, default=3, help="seconds that a run may take")
     parser.add_argument("--repeats", type=int, default=3, help="how often a run is timed at most")
+    parser.add_argument("--reference-seconds", type=float, default=60, help="of each reference")
     parser.add_argument("--problems", default="planet,cloth", help="which of planet and cloth")
     options = parser.parse_args()
     chosen = options.problems.split(",")
     if not set(chosen) <= {"planet", "cloth"}:
         parser.error(f"--problems {options.problems}: allowed are planet and cloth")
-    if options.repeats < 1 or not options.point_limit > 0:
-        parser.error("--repeats is 1 or more, and --point-limit above 0")
+    if options.repeats < 1 or not min(options.point_limit, options.reference_seconds) > 0:
+        parser.error("--repeats is 1 or more, and --point-limit and --reference-seconds above 0")
     os.makedirs(options.out, exist_ok=True)
     np.seterr(all="ignore")  # runs that grow without bound are part of a sweep
     planet, scene = own_forces.Planet(), qddot.scenes.cloth(nodes=30)
@@ -236,7 +237,8 @@ def main():
         system = qddot.System(
             p.mass, written(p.force), p.potential, p.stiffness, dimension=p.dimension
         )
-        exact = qddot.reference(system, p.until, q0=p.q0, v0=p.v0, seconds=60)
+        seconds = options.reference_seconds
+        exact = qddot.reference(system, p.until, q0=p.q0, v0=p.v0, seconds=seconds)
         print(f"{p.name}: reference certified to {exact.certified.position:.1e}", flush=True)
         scales = (np.max(np.abs(p.q0)), max(np.max(np.abs(exact.v)), 1e-3))
         for way in ways(p, of, scales, longest):

@@ -63,7 +63,7 @@ class Samples(Programs):
 class BesideSciPy(Programs):
     def test_a_small_study_is_measured_and_drawn(self):
         study = ROOT / "experiments/beside_scipy"
-        words = "--problems planet --point-limit 0.01 --repeats 1 --out .".split()
+        words = "--problems planet --point-limit 0.01 --reference-seconds 2 --repeats 1 --out .".split()
         command = [sys.executable, "-B", study / "measure.py", *words]
         done = subprocess.run(command, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
