@@ -32,9 +32,10 @@ class Ink:
 
     def index(self, x, y):
         """The cells of the pixels, those outside moved to the border."""
-        row = np.clip(((y - self.bottom) / CELL).astype(int), 0, self.cells.shape[0] - 1)
-        column = np.clip(((x - self.left) / CELL).astype(int), 0, self.cells.shape[1] - 1)
-        return row, column
+        return tuple(
+            np.minimum(np.maximum(((of - first) / CELL).astype(int), 0), count - 1)
+            for of, first, count in zip((y, x), (self.bottom, self.left), self.cells.shape)
+        )
 
     def add_marker(self, center, weight=1.0):
         """Inks the place of one marker: its cell and those around."""
@@ -63,7 +64,8 @@ class Ink:
 def points_between(start, end):
     """Points on a straight line, one a cell."""
     count = max(2, int(math.hypot(end[0] - start[0], end[1] - start[1]) / CELL))
-    return np.linspace(start[0], end[0], count), np.linspace(start[1], end[1], count)
+    shares = np.arange(count) / (count - 1)
+    return (a + (b - a) * shares for a, b in zip(start, end))
 
 
 class Candidate:
