@@ -28,7 +28,7 @@ STUDIES = {
     "modes": "--scene steady.toml",
     "symmetric_roots": "--samples 30",
     "verdicts": "--seeds 1 --cells 64",
-    "advice": "--cases 2 --first 11000000 --repeats 1 --reference-seconds 0.3",
+    "advice": "--cases 2 --first 11000011 --repeats 1 --reference-seconds 0.3",
     "bench": "steady.toml@0.01 --methods verlet --repeats 1 --point-limit 100 --peers odeint",
 }
 
