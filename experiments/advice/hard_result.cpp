@@ -81,7 +81,32 @@ Scales scales_of(const ReducedScene& model, const Seen& fine, const TrueMotion& 
     }
     scales.kinetic = std::max(scales.kinetic, kinetic);
   }
+  // Rounding may be all that moves. Errors are then relative to the size, as in an answer.
+  double extent = 0;
+  for (const Node& node : scene.nodes) extent = std::max(extent, node.position.norm());
+  if (truth.conditioning > scales.displacement) scales.displacement = extent;
   return scales;
+}
+
+// The energy [J] that the true motion seems to gain or lose if its states are kept, and their
+// energy computed, in double precision.
+double energy_of_rounding(const HardCase& hard, const TrueMotion& truth) {
+  const ReducedScene drawn = hard.as_drawn();
+  const auto energy = [&](const std::vector<Node>& nodes) {
+    State state = drawn.initial();
+    Index at = 0;
+    for (const Node& node : nodes) {
+      if (node.pinned) continue;
+      state.q.segment(at, drawn.dimension()) = node.position.head(drawn.dimension());
+      state.v.segment(at, drawn.dimension()) = node.velocity.head(drawn.dimension());
+      at += drawn.dimension();
+    }
+    return drawn.energy(state);
+  };
+  const double first = energy(truth.path.front());
+  double largest = 0;
+  for (const auto& nodes : truth.path) largest = std::max(largest, std::abs(energy(nodes) - first));
+  return largest;
 }
 
 // The least scale of any part that moves.
@@ -135,10 +160,11 @@ HardResult result_of(const HardCase& hard) {
   const Scales scales = scales_of(model, fine, truth, hard.scene);
   result.fine_error = error_of(fine, model, truth, scales, hard.of);
   const double kinetic = scales.kinetic > 0 ? scales.kinetic : 1;
-  result.conditioning = hard.of == AccuracyOf::energy ? truth.energy_conditioning / kinetic
-                        : hard.of == AccuracyOf::path
-                            ? truth.conditioning / least_scale(scales)
-                            : truth.conditioning_at_end / least_scale(scales);
+  result.conditioning =
+      hard.of == AccuracyOf::energy
+          ? (truth.energy_conditioning + energy_of_rounding(hard, truth)) / kinetic
+      : hard.of == AccuracyOf::path ? truth.conditioning / least_scale(scales)
+                                    : truth.conditioning_at_end / least_scale(scales);
   if (answer.method && answer.summary.outcome == Outcome::reached_end) {
     if (hard.of == AccuracyOf::positions) {
       result.error = position_error(answer.nodes, truth.path.back(), scales);

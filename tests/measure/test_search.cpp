@@ -45,8 +45,8 @@ std::vector<Searched> motions() {
 }
 
 double error_of(const Trial& trial, const Search& search, const Reference& reference) {
-  return errors_between(search.stage().model(), trial.path.back(), reference.end, reference.energy,
-                        search.stage().scales())
+  return errors_between(search.runs().stage().model(), trial.path.back(), reference.end,
+                        reference.energy, search.runs().stage().scales())
       .position;
 }
 
@@ -60,13 +60,13 @@ BOOST_AUTO_TEST_CASE(every_bound_holds) {
     const Trial* found = search.find(accuracy);
     BOOST_TEST_CONTEXT(scene.name) {
       BOOST_TEST_REQUIRE((found != nullptr));
-      BOOST_TEST(search.is_known(*found, accuracy));
-      BOOST_TEST_REQUIRE(search.conditioning().has_value());
+      BOOST_TEST(search.check().is_known(*found, accuracy));
+      BOOST_TEST_REQUIRE(search.check().conditioning().has_value());
       // The motions are regular. A run with error control chooses other steps after a push, so
       // that its own error is seen, too.
-      BOOST_TEST(search.conditioning()->effect < 0.01 * accuracy);
-      for (const Trial& trial : search.trials()) {
-        const auto bound = search.bound(trial);
+      BOOST_TEST(search.check().conditioning()->effect < 0.01 * accuracy);
+      for (const Trial& trial : search.runs().all()) {
+        const auto bound = search.check().bound(trial);
         if (!bound) continue;
         BOOST_TEST(
             error_of(trial, search, reference) <= bound->error + reference.certified.position,
@@ -87,8 +87,8 @@ BOOST_AUTO_TEST_CASE(the_judge_is_the_same_on_machines_of_any_speed) {
     Search slow(model, until, AccuracyOf::positions, seconds, &scene);
     slow.find(accuracy);
     BOOST_TEST_CONTEXT(scene.name) {
-      BOOST_TEST_REQUIRE((fast.best() && slow.best()));
-      BOOST_TEST(fast.conditioning()->effect == slow.conditioning()->effect);
+      BOOST_TEST_REQUIRE((fast.check().best() && slow.check().best()));
+      BOOST_TEST(fast.check().conditioning()->effect == slow.check().conditioning()->effect);
     }
   }
 }
@@ -101,10 +101,10 @@ BOOST_AUTO_TEST_CASE(a_pushed_run_checks_and_is_no_answer) {
   BOOST_TEST_REQUIRE((found && search.is_judged_by_forecast()));
   BOOST_TEST(!found->is_pushed);
   int pushed = 0;
-  for (const Trial& trial : search.trials()) {
+  for (const Trial& trial : search.runs().all()) {
     if (!trial.is_pushed) continue;
     ++pushed;
-    BOOST_TEST(!search.is_known(trial, 0.9));
+    BOOST_TEST(!search.check().is_known(trial, 0.9));
     // It began elsewhere, by no more than a rounding of the largest coordinate.
     BOOST_TEST(trial.path.front().q.allFinite());
   }
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(a_motion_that_lives_in_exact_symmetry_alone_is_told_from_it
   BOOST_TEST_REQUIRE(model.system().size() == 1);
   Search whole(model, 10, AccuracyOf::positions, seconds, &scene);
   BOOST_TEST((whole.find(1e-6) == nullptr));
-  BOOST_TEST(whole.conditioning()->leaves_by > 0.1);
+  BOOST_TEST(whole.check().conditioning()->leaves_by > 0.1);
   const Failure failure = why_not(whole, 1e-6, "");
   BOOST_TEST(failure.is_rounding);
   BOOST_TEST(failure.why.find("symmetry") != std::string::npos, failure.why);

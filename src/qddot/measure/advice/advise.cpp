@@ -28,9 +28,10 @@ void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) 
 Advice advice_for(const Search& search, double accuracy) {
   Advice advice{.accuracy = accuracy};
   std::vector<Candidate> known;
-  for (const Trial& trial : search.trials()) {
-    if (search.is_known(trial, accuracy))
-      known.push_back({trial.method, trial.value, search.bound(trial)->error, trial.seconds});
+  for (const Trial& trial : search.runs().all()) {
+    if (search.check().is_known(trial, accuracy))
+      known.push_back(
+          {trial.method, trial.value, search.check().bound(trial)->error, trial.seconds});
   }
   std::ranges::sort(known, {}, &Candidate::seconds);
   for (const Candidate& c : known) {
@@ -48,9 +49,9 @@ Advice advice_for(const Search& search, double accuracy) {
 // Runs of SUNDIALS' methods with error control, of the families that were not tried, while
 // `seconds` last: they are compared only.
 void try_sundials(Search& search, double accuracy, double seconds) {
-  constexpr double tolerance = 0.1;  // of the accuracy
+  const double tolerance = search.runs().rules().small;  // of the accuracy
   const auto begin = clock_now();
-  const System& system = search.stage().model().system();
+  const System& system = search.runs().stage().model().system();
   for (const Method& method : methods()) {
     const double left = seconds - seconds_since(begin);
     if (left <= 0) break;
@@ -58,16 +59,18 @@ void try_sundials(Search& search, double accuracy, double seconds) {
         !method.stock_of.empty() || !applies_to(method, system) || method.order < 4 ||
         (system.has_massless() && !method.is(Trait::accepts_massless)))
       continue;
-    search.try_once(method, std::clamp(tolerance * accuracy, 1e-13, 1e-2), left);
+    search.try_once(method, std::clamp(tolerance * accuracy, 10 * least_accuracy, tolerance), left);
   }
 }
 
-Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies) {
+Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies,
+                   AccuracyOf of) {
   Advices all{.largest_stable_step = infinity, .horizon = infinity};
-  const Answer rest = solve(model, until, {});
   for (const double accuracy : accuracies) {
-    all.for_each.push_back(
-        {.accuracy = accuracy, .take = Candidate{rest.method, rest.value, rest.error_estimate, 0}});
+    const Answer rest = solve(model, until, {.accuracy = accuracy, .of = of});
+    Advice advice{.accuracy = accuracy, .why = rest.why};
+    if (rest.is_reached) advice.take = Candidate{rest.method, rest.value, rest.error_estimate, 0};
+    all.for_each.push_back(advice);
   }
   return all;
 }
@@ -86,7 +89,7 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   if (accuracies.empty()) throw std::invalid_argument("advise: no accuracy is given");
   if (!(until > 0) || !std::isfinite(until))
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
-  if (model.system().size() == 0) return of_nothing(model, until, accuracies);
+  if (model.system().size() == 0) return of_nothing(model, until, accuracies, of);
   if (!model.system().has_stiffness())
     throw std::invalid_argument(
         "advise: the system has no stiffness K, which its frequencies follow from");
@@ -96,9 +99,10 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
   std::vector<double> fine_first = accuracies;
   std::ranges::sort(fine_first);
   for (const double accuracy : fine_first) search.find(accuracy);
-  constexpr double for_sundials = 0.1;  // of the time so far, and seconds at least
+  // They take a small part of the time so far, or of a second.
+  const double small = search.runs().rules().small;
   for (const double accuracy : fine_first)
-    try_sundials(search, accuracy, for_sundials * std::max(1.0, seconds_since(begin)));
+    try_sundials(search, accuracy, small * std::max(1.0, seconds_since(begin)));
   for (const double accuracy : accuracies) {
     Advice advice = advice_for(search, accuracy);
     if (!advice.take) advice.why = why_not(search, accuracy, "").why;
@@ -114,7 +118,7 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
     all.own_frequency = search.forecast()->own().at(2);
   }
   all.largest_stable_step = all.w_motion > 0 ? 2 / all.w_motion : infinity;
-  all.runs = static_cast<int>(search.trials().size());
+  all.runs = static_cast<int>(search.runs().all().size());
   all.seconds = seconds_since(begin);
   return all;
 }

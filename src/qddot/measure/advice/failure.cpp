@@ -11,18 +11,17 @@ namespace {
 
 // Whether the motion itself is known to the accuracy, but not that it keeps its symmetry.
 bool is_by_symmetry(const Conditioning& found, double accuracy) {
-  constexpr double much = 0.5;
-  return found.leaves_by > found.effect && found.effect <= much * accuracy;
+  return found.leaves_by > found.effect && found.effect <= accuracy;
 }
 
 // The last look [s] until which one rounding changes the motion by less than the accuracy.
 double known_until(const Search& search, double accuracy) {
   double until = 0;
-  for (const auto* differences :
-       {&search.conditioning()->differences, &search.conditioning()->differences_left}) {
+  for (const auto* differences : {&search.check().conditioning()->differences,
+                                  &search.check().conditioning()->differences_left}) {
     std::size_t i = 0;
     while (i < differences->size() && (*differences)[i] <= accuracy) ++i;
-    const double own = i == 0 ? 0 : search.stage().times()[i - 1];
+    const double own = i == 0 ? 0 : search.runs().stage().times()[i - 1];
     if (differences->empty()) continue;
     until = until == 0 ? own : std::min(until, own);
   }
@@ -30,11 +29,11 @@ double known_until(const Search& search, double accuracy) {
 }
 
 std::string rounding_in_words(const Failure& failure, const Search& search, double accuracy) {
-  const Conditioning& found = *search.conditioning();
-  const double until = search.stage().until(), known = known_until(search, accuracy);
+  const Conditioning& found = *search.check().conditioning();
+  const double until = search.runs().stage().until(), known = known_until(search, accuracy);
   const std::string instead =
       known > 0 ? fmt::format("; up to t = {:.3g} s it can be reached", known) : "";
-  if (search.stage().of() == AccuracyOf::energy) {
+  if (search.runs().stage().of() == AccuracyOf::energy) {
     return fmt::format("rounding of the positions changes the energy by {:.1e} of the kinetic one",
                        found.effect);
   }
@@ -62,14 +61,14 @@ std::string rounding_in_words(const Failure& failure, const Search& search, doub
 }  // namespace
 
 std::optional<Divergence> parting(const Search& search) {
-  const auto& conditioning = search.conditioning();
+  const auto& conditioning = search.check().conditioning();
   if (!conditioning) return {};
   const std::vector<double>& seen = conditioning->leaves_by > conditioning->effect
                                         ? conditioning->differences_left
                                         : conditioning->differences;
   if (seen.empty()) return {};
-  std::vector<double> times{0}, differences{search.stage().rounding()};
-  const auto& looks = search.stage().times();
+  std::vector<double> times{0}, differences{search.runs().stage().rounding()};
+  const auto& looks = search.runs().stage().times();
   times.insert(times.end(), looks.begin(), looks.end());
   differences.insert(differences.end(), seen.begin(), seen.end());
   return divergence(times, differences);
@@ -77,24 +76,23 @@ std::optional<Divergence> parting(const Search& search) {
 
 Failure why_not(const Search& search, double accuracy, const std::string& stopped_by) {
   Failure failure;
-  const Trial* best = search.best();
-  const std::string reached =
-      best ? fmt::format("the smallest known error bound is {:.1e}", search.bound(*best)->error)
-           : "no error is known";
-  const Trial* last = search.trials().empty() ? nullptr : &search.trials().back();
-  const bool none_reached = std::ranges::none_of(search.trials(), &Trial::reached_end);
-  const auto& conditioning = search.conditioning();
+  const Trial* best = search.check().best();
+  const std::string reached = best ? fmt::format("the smallest known error bound is {:.1e}",
+                                                 search.check().bound(*best)->error)
+                                   : "no error is known";
+  const Trial* last = search.runs().all().empty() ? nullptr : &search.runs().all().back();
+  const bool none_reached = std::ranges::none_of(search.runs().all(), &Trial::reached_end);
+  const auto& conditioning = search.check().conditioning();
   // Steps that do not resolve a motion may find a cable slack that is taut: the finest tolerance
   // decides.
   const Trial* finest = nullptr;
-  for (const Trial& trial : search.trials()) {
+  for (const Trial& trial : search.runs().all()) {
     if (trial.method->knob == Knob::rtol && (!finest || trial.value <= finest->value))
       finest = &trial;
   }
-  // An effect this large leaves no room for a run's own error.
-  constexpr double much = 0.5;
+  // A share this large leaves little room for a run's own error.
   failure.is_rounding =
-      conditioning && std::max(conditioning->effect, conditioning->leaves_by) > much * accuracy;
+      conditioning && search.runs().rules().doubt * conditioning->share > accuracy;
   if (const auto parted = parting(search); parted && failure.is_rounding) {
     failure.horizon = parted->horizon;
     failure.lyapunov = parted->lyapunov;
@@ -105,7 +103,7 @@ Failure why_not(const Search& search, double accuracy, const std::string& stoppe
     failure.why = finest->summary.message;
   } else if (failure.is_rounding) {
     failure.why = rounding_in_words(failure, search, accuracy);
-    if (best && !(failure.horizon <= search.stage().until())) failure.why += "; " + reached;
+    if (best && !(failure.horizon <= search.runs().stage().until())) failure.why += "; " + reached;
   } else if (last && none_reached) {
     failure.why = fmt::format("no run reached the end; {} at {:g}: {}", last->method->name,
                               last->value, last->summary.message);

@@ -13,13 +13,6 @@ namespace qddot::inline measure {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
-// Steps are chosen this far below the stability limit. The largest frequency is known at some times
-// of the motion only, and may be larger between them.
-constexpr double below_limit = 0.95;
-// Steps are chosen this far below a step size that failed.
-constexpr double below_failure = 0.8;
-// A run gives no forecast for knobs that are finer or coarser by more than this factor.
-constexpr double farthest = 100;
 
 }  // namespace
 
@@ -29,18 +22,18 @@ bool is_forecast_by_frequency(const Method& method) {
 
 double power_of_error(const Method& method) { return method.knob == Knob::rtol ? 1 : method.order; }
 
-Forecast::Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion,
-                   double force_seconds)
-    : stage_(stage),
-      own_(own),
+Forecast::Forecast(const Runs& runs, const std::vector<State>& path, double w_motion)
+    : runs_(runs),
+      rules_(runs.rules()),
+      own_(own_frequencies(runs.stage().model(), path, w_motion, static_cast<int>(rules_.places))),
       w_motion_(w_motion),
-      force_seconds_(force_seconds),
-      sensitivity_(own.speed * stage.until()) {}
+      force_seconds_(seconds_of_force(runs.stage().model())),
+      sensitivity_(own_.speed * runs.stage().until()),
+      until_(runs.stage().until()) {}
 
 double Forecast::doubt(const Method& one, const Method& other) const {
-  constexpr double of_seen = 1.5, of_unseen = 4;
   if (&one == &other) return 1;
-  return has_seen(one) && has_seen(other) ? of_seen : of_unseen;
+  return has_seen(one) && has_seen(other) ? rules_.doubt : rules_.doubt * rules_.doubt;
 }
 
 double Forecast::by_frequency(const Method& method, double value) const {
@@ -51,10 +44,10 @@ double Forecast::by_frequency(const Method& method, double value) const {
 // slopes of their logarithms are 0.7 and 0 over the training cases.
 double Forecast::correction(const Method& method) const {
   if (by_order_.empty()) return 1;
-  constexpr double unrelated = 8;
   const auto orders_apart = [&](const auto& known) { return std::abs(known.first - method.order); };
   const auto nearest = std::ranges::min_element(by_order_, {}, orders_apart);
-  return std::pow(nearest->second, std::max(0.0, 1 - orders_apart(*nearest) / unrelated));
+  return std::pow(nearest->second,
+                  std::max(0.0, 1 - orders_apart(*nearest) / rules_.unrelated_orders));
 }
 
 double Forecast::scale(const Method& method) const {
@@ -78,26 +71,26 @@ double Forecast::seconds(const Method& method, double value) const {
     return seen->second.seconds * std::pow(seen->second.value / value, share);
   }
   if (!is_forecast_by_frequency(method)) return unknown;
-  return forces_a_step(method) * force_seconds_ * std::max(1.0, std::round(stage_.until() / value));
+  return forces_a_step(method) * force_seconds_ * std::max(1.0, std::round(until_ / value));
 }
 
 double Forecast::largest_step(const Method& method) const {
-  double h = stage_.until();
+  double h = until_;
   const double limit = linear_limit(method);
-  if (w_motion_ > 0 && std::isfinite(limit)) h = std::min(h, below_limit * limit / w_motion_);
+  if (w_motion_ > 0 && std::isfinite(limit))
+    h = std::min(h, rules_.clearly_below * limit / w_motion_);
   const auto failed = failed_.find(&method);
-  if (failed != failed_.end()) h = std::min(h, below_failure * failed->second);
+  if (failed != failed_.end()) h = std::min(h, rules_.clearly_below * failed->second);
   return h;
 }
 
 double Forecast::step_by_frequency(const Method& method, double error) const {
   const double w = own_.at(method.order);
-  if (!(w > 0 && sensitivity_ > 0)) return stage_.until();
+  if (!(w > 0 && sensitivity_ > 0)) return until_;
   return largest_h_omega(method, error / sensitivity_) / w;
 }
 
 std::optional<Candidate> Forecast::candidate(const Method& method, double error) const {
-  const double until = stage_.until();
   const auto seen = seen_.find(&method);
   double value = 0;
   if (is_forecast_by_frequency(method)) {
@@ -105,24 +98,26 @@ std::optional<Candidate> Forecast::candidate(const Method& method, double error)
   } else {
     if (seen == seen_.end()) return {};
     const double finer = std::pow(seen->second.error / error, 1 / power_of_error(method));
+    // A run says nothing of knobs that are much finer or coarser.
+    const double farthest = 1 / (rules_.small * rules_.small);
     if (!(finer < farthest && finer > 1 / farthest)) return {};
     value = seen->second.value / finer;
   }
   if (method.knob == Knob::rtol) {
-    value = std::clamp(value, 1e-14, 0.1);
+    value = std::clamp(value, least_accuracy, rules_.small);
   } else {
     value = std::min(value, largest_step(method));
     if (!(value > 0)) return {};
-    const double steps = std::ceil(until / value * (1 - 1e-9));
+    const double steps = std::ceil(until_ / value * (1 - 1e-9));
     if (method.recurrence_roots && steps < 2 * method.order) return {};
-    value = until / steps;
+    value = until_ / steps;
   }
   return Candidate{&method, value, this->error(method, value), seconds(method, value)};
 }
 
 std::vector<Candidate> Forecast::candidates(double error) const {
   std::vector<Candidate> all;
-  const System& system = stage_.model().system();
+  const System& system = runs_.stage().model().system();
   for (const Method& method : methods()) {
     if (!applies_to(method, system) || !method.stock_of.empty() || method.order == 0) continue;
     if (system.has_massless() && !method.is(Trait::accepts_massless)) continue;
@@ -131,6 +126,37 @@ std::vector<Candidate> Forecast::candidates(double error) const {
   }
   std::ranges::sort(all, {}, &Candidate::seconds);
   return all;
+}
+
+double Forecast::error_seen(const Trial& trial, const Trial& by) const {
+  const Stage& stage = runs_.stage();
+  return stage.of() == AccuracyOf::energy ? stage.energy_error(trial) : runs_.distance(trial, by);
+}
+
+void Forecast::learn(const Check& check) {
+  for (const Trial& trial : runs_.all()) {
+    if (trial.reached_end() || trial.method->knob != Knob::step_size) continue;
+    // Longer steps are expected to fail, too.
+    const auto [place, is_new] = failed_.try_emplace(trial.method, trial.value);
+    if (!is_new) place->second = std::min(place->second, trial.value);
+  }
+  const Trial* by = check.judge();
+  double least = by ? check.error_of(*by) : unknown;
+  if (!by) {
+    for (const Trial& trial : runs_.all()) {
+      const double expected = error(*trial.method, trial.value);
+      if (!trial.reached_end() || !(expected < least)) continue;
+      least = expected;
+      by = &trial;
+    }
+  }
+  if (!by) return;
+  for (const Trial& trial : runs_.all()) {
+    if (!trial.reached_end() || trial.is_pushed || &trial == by) continue;
+    // An error near that of the other run says nothing.
+    const double seen = error_seen(trial, *by);
+    if (seen > rules_.doubt * least) learn(trial, seen);
+  }
 }
 
 void Forecast::learn(const Trial& trial, double error) {
@@ -144,12 +170,6 @@ void Forecast::learn(const Trial& trial, double error) {
   } else {
     seen_.erase(&method);
   }
-}
-
-void Forecast::learn_failure(const Trial& trial) {
-  if (trial.method->knob != Knob::step_size) return;
-  const auto [place, is_new] = failed_.try_emplace(trial.method, trial.value);
-  if (!is_new) place->second = std::min(place->second, trial.value);
 }
 
 }  // namespace qddot::inline measure

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "qddot/measure/advice/check.hpp"
 #include "qddot/measure/advice/own_frequencies.hpp"
-#include "qddot/measure/advice/trial.hpp"
 
 namespace qddot::inline measure {
 
@@ -30,14 +30,13 @@ double power_of_error(const Method& method);
 // the number of steps times the time of a step, at first the time of its forces.
 class Forecast {
  public:
-  // Borrows the stage. `w_motion`: the largest frequency over the motion [rad/s], zero if nothing
-  // vibrates. `force_seconds`: the time of one evaluation of f [s].
-  Forecast(const Stage& stage, const OwnFrequencies& own, double w_motion, double force_seconds);
+  // Borrows the runs. `path` is the motion as one of them saw it, `w_motion` the largest frequency
+  // over it [rad/s], zero if nothing vibrates.
+  Forecast(const Runs& runs, const std::vector<State>& path, double w_motion);
 
   // The expected error; infinite if nothing is known. `value`: the knob, h [s] or rtol.
   double error(const Method& method, double value) const;
-  // The factor by which the ratio of two methods' errors may differ from the forecast: 1 for two
-  // runs of one method, 1.5 if errors of both methods were seen, else 4.
+  // The factor by which the ratio of two methods' errors may differ from the forecast.
   double doubt(const Method& one, const Method& other) const;
   // The run of the method that is expected to have the error; empty if there is none.
   std::optional<Candidate> candidate(const Method& method, double error) const;
@@ -49,11 +48,11 @@ class Forecast {
 
   // Whether an error of the method was seen.
   bool has_seen(const Method& method) const { return seen_.contains(&method); }
+  // Corrects the forecast by the runs: by the errors that the check knows, and else by distances to
+  // the run that is expected to be the most accurate.
+  void learn(const Check& check);
   // Corrects the forecast by the error and the time of a run.
   void learn(const Trial& trial, double error);
-  // Notes that a run of fixed steps failed. Longer steps of the method are then expected to fail
-  // too.
-  void learn_failure(const Trial& trial);
 
   double w_motion() const { return w_motion_; }
   const OwnFrequencies& own() const { return own_; }
@@ -69,9 +68,12 @@ class Forecast {
   double largest_step(const Method& method) const;
   double seconds(const Method& method, double value) const;
 
-  const Stage& stage_;
+  double error_seen(const Trial& trial, const Trial& by) const;
+
+  const Runs& runs_;
+  const Rules& rules_;
   OwnFrequencies own_;
-  double w_motion_, force_seconds_, sensitivity_;
+  double w_motion_, force_seconds_, sensitivity_, until_;
   std::map<const Method*, Seen> seen_;
   std::map<int, double> by_order_;          // error seen over error expected, of the last run
   std::map<const Method*, double> failed_;  // the smallest step that failed [s]

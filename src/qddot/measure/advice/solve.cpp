@@ -1,5 +1,6 @@
 #include "qddot/measure/advice/solve.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -25,42 +26,57 @@ void fill(Answer& answer, const Search& search, const Trial& trial, const Reduce
   answer.end = trial.path.empty() ? model.initial() : trial.path.back();
   answer.nodes = model.expand(answer.end);
   answer.seconds.run = trial.seconds;
-  const auto bound = search.bound(trial);
+  const auto bound = search.check().bound(trial);
   if (bound && bound->by) answer.seconds.check = bound->by->seconds;
 }
 
 EstimateKind kind_of(const Search& search, const Trial& trial, AccuracyOf of) {
   if (of == AccuracyOf::energy) return EstimateKind::conserved;
   if (trial.method->order == 0) return EstimateKind::rounding;
-  const auto bound = search.bound(trial);
+  const auto bound = search.check().bound(trial);
   return bound && bound->by_coarser ? EstimateKind::refined : EstimateKind::compared;
 }
 
 // The last trial that came to the end, else the last one; nullptr if none was made.
 const Trial* last_of(const Search& search) {
   const Trial* last = nullptr;
-  for (const Trial& trial : search.trials()) {
+  for (const Trial& trial : search.runs().all()) {
     if (trial.is_pushed) continue;
     if (!last || trial.reached_end() || !last->reached_end()) last = &trial;
   }
   return last;
 }
 
-// The answer for a scene that rests or moves in closed form: it has rounding errors only.
-Answer of_nothing(const ReducedScene& model, double until) {
+// The answer for a scene that rests or moves in closed form. It has rounding errors only; these are
+// larger beside a motion that is small beside its coordinates.
+Answer of_nothing(const ReducedScene& model, double until, const Wanted& wanted) {
   Answer answer;
-  answer.is_reached = true;
-  const Method* exact = find_method("exact");
-  answer.method = applies_to(*exact, model.system()) ? exact : find_method("verlet");
+  const auto fits = [&](const Method& method) { return applies_to(method, model.system()); };
+  const auto is_exact = [&](const Method& method) { return method.order == 0 && fits(method); };
+  const auto exact = std::ranges::find_if(methods(), is_exact);
+  answer.method = exact != methods().end() ? &*exact : &*std::ranges::find_if(methods(), fits);
   answer.value = until;
-  answer.error_estimate = 4 * machine_epsilon;
-  answer.error_estimate_kind = EstimateKind::rounding;
   answer.end = model.initial();
   answer.end.t = until;
   answer.summary.outcome = Outcome::reached_end;
   answer.summary.t_reached = until;
   answer.summary.message.clear();
   answer.nodes = model.expand(answer.end);
+  Scales scales;
+  for (const double t : {0.0, until / 2, until})
+    extend(scales, model, {t, model.initial().q, model.initial().v});
+  double roundings = 1;
+  for (const PartScale& part : scales.parts) {
+    if (part.displacement > 0 && wanted.of != AccuracyOf::energy)
+      roundings = std::max(roundings, part.extent / part.displacement);
+  }
+  answer.error_estimate = 4 * machine_epsilon * roundings;
+  answer.error_estimate_kind = EstimateKind::rounding;
+  answer.is_reached = answer.error_estimate <= wanted.accuracy;
+  if (!answer.is_reached) {
+    answer.why = fmt::format("one rounding of the start changes the motion by {:.1e} of it",
+                             machine_epsilon * roundings);
+  }
   return answer;
 }
 
@@ -89,7 +105,7 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted, cons
   require_accuracy(wanted.accuracy);
   if (!(until > 0) || !std::isfinite(until))
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
-  if (model.system().size() == 0) return of_nothing(model, until);
+  if (model.system().size() == 0) return of_nothing(model, until, wanted);
   if (!model.system().has_stiffness())
     throw std::invalid_argument(
         "solve: the system has no stiffness K, which its frequencies follow from");
@@ -99,14 +115,14 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted, cons
   std::string stopped_by;
   try {
     found = search.find(wanted.accuracy);
-    if (search.seconds_left() <= 0) stopped_by = "time was up";
+    if (search.runs().seconds_left() <= 0) stopped_by = "time was up";
   } catch (const Interrupted& interrupted) {
     stopped_by = interrupted.what();
   }
   if (found) {
     fill(answer, search, *found, model);
     answer.is_reached = true;
-    answer.error_estimate = search.bound(*found)->error;
+    answer.error_estimate = search.check().bound(*found)->error;
     answer.error_estimate_kind = kind_of(search, *found, wanted.of);
     answer.advised_by = found->method->order == 0        ? AdvisedBy::modes
                         : search.is_judged_by_forecast() ? AdvisedBy::forecast
@@ -117,16 +133,16 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted, cons
     answer.horizon = failure.horizon;
     answer.lyapunov = failure.lyapunov;
     answer.advised_by = AdvisedBy::tolerance;
-    const Trial* best = search.best();
+    const Trial* best = search.check().best();
     const Trial* shown = best ? best : last_of(search);
     if (shown) fill(answer, search, *shown, model);
     // Beyond the horizon two lost runs may be near each other by chance.
     if (best && !(answer.horizon <= until)) {
-      answer.error_estimate = search.bound(*best)->error;
+      answer.error_estimate = search.check().bound(*best)->error;
       answer.error_estimate_kind = kind_of(search, *best, wanted.of);
     }
   }
-  answer.runs = static_cast<int>(search.trials().size());
+  answer.runs = static_cast<int>(search.runs().all().size());
   answer.seconds.pilots = seconds_since(begin) - answer.seconds.run - answer.seconds.check;
   return answer;
 }

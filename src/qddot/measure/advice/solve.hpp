@@ -17,8 +17,6 @@ struct Wanted {
   double seconds = std::numeric_limits<double>::infinity();
 };
 
-// The smallest accuracy that can be asked for; smaller errors are below rounding.
-constexpr double least_accuracy = 1e-14;
 // Throws std::invalid_argument, which begins with `said` and names the allowed range, for an
 // accuracy outside of it.
 void require_accuracy(double accuracy, const std::string& said = "accuracy =");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -14,18 +15,21 @@
 namespace qddot::inline measure {
 namespace {
 
-// Runs shorter than this [s] are timed again, as the first one runs with cold caches.
-constexpr double short_run = 1e-3;
-constexpr int repeats_of_short = 3;
-// A part that moves by no more roundings of its positions than this has no motion to measure.
-constexpr double roundings_at_rest = 30;
 // The largest relative rounding error of a number.
 constexpr double one_rounding = machine_epsilon / 2;
 
 }  // namespace
 
-Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, int looks, const Scene* drawn)
-    : model_(model), until_(until), of_(of), drawn_(drawn), times_(random_times(until, looks)) {}
+Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
+             const Rules& rules)
+    : model_(model),
+      until_(until),
+      of_(of),
+      drawn_(drawn),
+      rules_(rules),
+      times_(random_times(
+          until, static_cast<std::int64_t>(of == AccuracyOf::positions ? rules.looks
+                                                                       : rules.looks_at_a_path))) {}
 
 Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
                       double value, const Limits& limits) const {
@@ -50,22 +54,41 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
   return trial;
 }
 
+void Stage::look_within_steps(const Method& method, double value, const Limits& limits) {
+  Options options = options_for(method, value, model_);
+  options.most_forces = limits.forces;
+  const auto integrator = make_integrator(method, model_.system(), options);
+  std::vector<double> steps{0};
+  Observer each{{}, [](const State&) {}, [&](const State& seen) { steps.push_back(seen.t); }};
+  State state = model_.initial();
+  const Deadline deadline(limits.seconds);
+  integrator->advance(state, until_, each, deadline.token());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(0, 1);
+  const std::size_t every = 1 + steps.size() / static_cast<std::size_t>(rules_.looks_at_a_path);
+  for (std::size_t i = every; i < steps.size(); i += every)
+    times_.push_back(steps[i - 1] + part(random) * (steps[i] - steps[i - 1]));
+  std::ranges::sort(times_);
+}
+
 Trial Stage::run(const Method& method, double value, const Limits& limits) const {
   return run_from(model_, model_.initial(), method, value, limits);
 }
 
-Trial Stage::run_pushed(const Method& method, double value, const Limits& limits) const {
-  Trial trial =
-      run_from(model_, displaced_start(model_, scales_, one_rounding), method, value, limits);
+Trial Stage::run_pushed(const Method& method, double value, const Limits& limits,
+                        const Push& push) const {
+  const State start = displaced_start(model_, scales_, push.roundings * one_rounding, push.seed);
+  Trial trial = run_from(model_, start, method, value, limits);
   trial.is_pushed = true;
   return trial;
 }
 
 void Stage::time_again(Trial& trial) const {
-  if (!trial.reached_end() || trial.seconds >= short_run) return;
+  const double limit = rules_.small * rules_.unnoticed;
+  if (!trial.reached_end() || trial.seconds >= limit) return;
   const auto integrator = make_integrator(*trial.method, model_.system(),
                                           options_for(*trial.method, trial.value, model_));
-  for (int i = 0; i < repeats_of_short; ++i) {
+  for (int i = 0; i < 2; ++i) {
     State state = model_.initial();
     trial.seconds =
         std::min(trial.seconds, seconds_of([&] { integrator->advance(state, until_); }));
@@ -76,11 +99,31 @@ void Stage::measure_by(const Trial& trial) {
   scales_ = {};
   extend(scales_, model_, model_.initial());
   for (const State& seen : trial.path) extend(scales_, model_, seen);
-  if (!rests()) return;
+  reach_to_pins();
+  rests_ = std::ranges::all_of(scales_.parts, [&](const PartScale& part) {
+    return part.displacement <= rules_.rest * machine_epsilon * part.extent;
+  });
+  if (!rests_) return;
   // Errors of what rests are relative to its size.
   for (PartScale& part : scales_.parts) {
     part.displacement = part.extent;
     scales_.displacement = std::max(scales_.displacement, part.extent);
+  }
+}
+
+// A force rounds as the ends of its spring do, so that a node near the origin is no more accurate
+// than the pins that hold it.
+void Stage::reach_to_pins() {
+  if (!drawn_) return;
+  const std::vector<Node>& nodes = drawn_->nodes;
+  std::vector<double> reach(nodes.size(), 0);
+  for (const Spring& spring : drawn_->springs) {
+    const auto [i, j] = spring.nodes;
+    if (nodes[j].pinned) reach[i] = std::max(reach[i], nodes[j].position.lpNorm<Eigen::Infinity>());
+    if (nodes[i].pinned) reach[j] = std::max(reach[j], nodes[i].position.lpNorm<Eigen::Infinity>());
+  }
+  for (PartScale& part : scales_.parts) {
+    for (const std::size_t i : part.nodes) part.extent = std::max(part.extent, reach[i]);
   }
 }
 
@@ -93,31 +136,26 @@ double Stage::rounding() const {
   return largest;
 }
 
-bool Stage::rests() const {
-  return std::ranges::all_of(scales_.parts, [](const PartScale& part) {
-    return part.displacement <= roundings_at_rest * machine_epsilon * part.extent;
-  });
-}
-
 double Stage::energy_error(const Trial& trial) const {
   return scales_.kinetic > 0 ? trial.energy_gap / scales_.kinetic : trial.energy_gap;
 }
 
 double Stage::energy_rounding(const Trial& trial) const {
   if (!(scales_.kinetic > 0)) return 0;
-  Vec f(model_.system().size());
   double largest = 0;
-  for (const State& seen : trial.path) {
-    model_.system().force(seen.q, f);
-    largest = std::max(largest, f.cwiseAbs().dot(seen.q.cwiseAbs()));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> share(-machine_epsilon, machine_epsilon);
+  for (State seen : trial.path) {
+    const double energy = model_.energy(seen);
+    for (double& q : seen.q) q *= 1 + share(random);
+    largest = std::max(largest, std::abs(model_.energy(seen) - energy));
   }
-  return one_rounding * largest / scales_.kinetic;
+  return largest / scales_.kinetic;
 }
 
 double Stage::distance(const Trial& one, const Trial& other) const {
   // Between the looks the largest distance may be larger.
-  constexpr double between = 1.4;
-  if (of_ == AccuracyOf::path) return between * std::ranges::max(distances(one, other));
+  if (of_ == AccuracyOf::path) return rules_.doubt * std::ranges::max(distances(one, other));
   return errors_between(model_, one.path.back(), other.path.back(), 0, scales_).position;
 }
 
@@ -135,8 +173,8 @@ bool Stage::is_reduced_by_symmetry() const {
          });
 }
 
-std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial,
-                                                     const Limits& limits) const {
+std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial, const Method& method,
+                                                     double value, const Limits& limits) const {
   const ReducedScene drawn(*drawn_,
                            Reductions().without(Reduction::dimension).without(Reduction::mirror));
   Scales scales;
@@ -146,9 +184,10 @@ std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial,
   for (PartScale& part : scales.parts) {
     if (part.extent == 0) part.displacement = scales_.displacement;
   }
-  const State start = displaced_start(drawn, scales, one_rounding);
-  const Trial pushed = run_from(drawn, start, *trial.method, trial.value, limits);
   std::vector<double> all;
+  if (!applies_to(method, drawn.system())) return all;
+  const State start = displaced_start(drawn, scales, one_rounding, 1);
+  const Trial pushed = run_from(drawn, start, method, value, limits);
   if (!pushed.reached_end()) return all;
   for (std::size_t i = 0; i < times_.size(); ++i) {
     all.push_back(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "qddot/integrators/method.hpp"
+#include "qddot/measure/advice/rules.hpp"
 #include "qddot/measure/motion/error.hpp"
 
 namespace qddot::inline measure {
@@ -13,6 +14,9 @@ namespace qddot::inline measure {
 // The error that an accuracy bounds: of the positions at the end, of the positions at any time, or
 // of the energy at any time over the largest kinetic energy.
 enum class AccuracyOf { positions, path, energy };
+
+// The smallest accuracy that can be asked for; smaller errors, and tolerances, are below rounding.
+constexpr double least_accuracy = 1e-14;
 
 // A whole run of a method, seen at the times of its stage.
 struct Trial {
@@ -30,6 +34,14 @@ struct Trial {
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
 
+// The push of a start away from what was drawn.
+struct Push {
+  // Different seeds push in different directions.
+  std::uint32_t seed = 1;
+  // The largest change of a number, in its roundings.
+  double roundings = 1;
+};
+
 // The limits of a run. A limit of forces ends it after the same work on every machine.
 struct Limits {
   double seconds = std::numeric_limits<double>::infinity();
@@ -41,15 +53,19 @@ struct Limits {
 class Stage {
  public:
   // Borrows the model and, if given, the scene that it is the reduction of.
-  Stage(const ReducedScene& model, double until, AccuracyOf of, int looks,
-        const Scene* drawn = nullptr);
+  Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
+        const Rules& rules);
+
+  // Looks also within the steps of a run, one random look in each of some of them: short steps are
+  // where a motion is fast, and where errors on the way may be largest.
+  void look_within_steps(const Method& method, double value, const Limits& limits);
 
   // Runs the method from the start to the end.
   Trial run(const Method& method, double value, const Limits& limits) const;
-  // The same from a start that is one rounding away.
-  Trial run_pushed(const Method& method, double value, const Limits& limits) const;
-  // Repeats a trial that reached the end in less than a millisecond; its time becomes the least of
-  // several runs.
+  // The same from a start that is pushed.
+  Trial run_pushed(const Method& method, double value, const Limits& limits,
+                   const Push& push) const;
+  // Repeats a trial that reached the end in a short time; its time becomes the least of all.
   void time_again(Trial& trial) const;
 
   // Takes the scales of errors from the trial, which reached the end. Errors need this first.
@@ -63,21 +79,22 @@ class Stage {
   // One rounding of the start, as a distance.
   double rounding() const;
   // Whether nothing moves by more than the rounding of its positions.
-  bool rests() const;
+  bool rests() const { return rests_; }
 
   // Whether the forces are those of springs that were drawn, and not of a caller's own system.
   bool has_springs() const { return drawn_ && !drawn_->springs.empty(); }
   // Whether a dimension or a mirror was reduced of the scene that was drawn.
   bool is_reduced_by_symmetry() const;
-  // Repeats the trial with all drawn nodes in all drawn dimensions, from a start that is one
-  // rounding away, and gives the distances of the two. Empty if the run fails.
-  std::vector<double> distances_out_of_symmetry(const Trial& trial, const Limits& limits) const;
+  // Runs the method with all drawn nodes in all drawn dimensions, from a start that is one rounding
+  // away, and gives the distances from the trial. Empty if the run fails.
+  std::vector<double> distances_out_of_symmetry(const Trial& trial, const Method& method,
+                                                double value, const Limits& limits) const;
 
   // The largest relative error of the energy on the way, if the energy is asked for.
   double energy_error(const Trial& trial) const;
 
-  // The relative error of the energy if each position along the trial is rounded: the largest sum
-  // of |f q| over its looks, times one rounding.
+  // The relative error of the energy if each position along the trial is rounded at random, and of
+  // the energy's own rounding: the largest at its looks.
   double energy_rounding(const Trial& trial) const;
 
   const ReducedScene& model() const { return model_; }
@@ -85,8 +102,10 @@ class Stage {
   AccuracyOf of() const { return of_; }
   const std::vector<double>& times() const { return times_; }
   const Scales& scales() const { return scales_; }
+  const Rules& rules() const { return rules_; }
 
  private:
+  void reach_to_pins();
   Trial run_from(const ReducedScene& model, const State& start, const Method& method, double value,
                  const Limits& limits) const;
 
@@ -94,8 +113,10 @@ class Stage {
   double until_;
   AccuracyOf of_;
   const Scene* drawn_;
+  Rules rules_;
   std::vector<double> times_;
   Scales scales_;
+  bool rests_ = false;
 };
 
 }  // namespace qddot::inline measure

@@ -1,0 +1,156 @@
+#include "qddot/measure/advice/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "qddot/model/machine_epsilon.hpp"
+
+namespace qddot::inline measure {
+
+const Trial* Check::judge() const {
+  const auto least =
+      std::ranges::min_element(judges_, {}, [](const auto& judge) { return judge.second.error; });
+  return least == judges_.end() ? nullptr : least->first;
+}
+
+// The distance that the run's own error explains is in its bound already.
+double Check::beyond_own_error(const Trial& trial, double apart_by) const {
+  const auto judged = judges_.find(&trial);
+  return judged == judges_.end() ? apart_by : std::max(0.0, apart_by - judged->second.error);
+}
+
+void Check::condition(const Trial& judge, double accuracy) {
+  conditioning_.reset();
+  const Stage& stage = runs_.stage();
+  const Rules& rules = runs_.rules();
+  // What rests does not feel one rounding, though it adds up. It is pushed by many, and the effect
+  // is in proportion.
+  const double pushed_by = stage.rests() ? std::pow(2.0, 20) : 1;
+  Conditioning found;
+  const auto repeat = [&](std::uint32_t seed) {
+    const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {seed, pushed_by});
+    if (!twin.reached_end()) return false;
+    const double apart_by = runs_.distance(judge, twin) / pushed_by;
+    const double effect =
+        stage.rests() ? std::max(apart_by, machine_epsilon) : beyond_own_error(judge, apart_by);
+    if (found.differences.empty() || effect > found.effect) {
+      found.differences = stage.distances(judge, twin);
+      for (double& difference : found.differences) difference /= pushed_by;
+    }
+    found.effect = std::max(found.effect, effect);
+    return true;
+  };
+  if (!repeat(1)) return;
+  // One pair of runs may be near each other by luck. So its distance counts twice as often as the
+  // largest of three.
+  found.share = rules.doubt * (stage.rests() ? rules.rest : rules.doubt) * found.effect;
+  if (!stage.rests() && found.share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
+    if (!repeat(2) || !repeat(3)) return;
+    found.share = rules.doubt * found.effect;
+  }
+  conditioning_ = found;
+  if (!condition_symmetry(judge, accuracy)) conditioning_.reset();
+}
+
+bool Check::condition_symmetry(const Trial& judge, double accuracy) {
+  const Stage& stage = runs_.stage();
+  if (!stage.is_reduced_by_symmetry()) return true;
+  if (!conditioning_) conditioning_.emplace();
+  const Rules& rules = runs_.rules();
+  // The drawn motion may need a finer tolerance than the reduced one: it passes beside what that
+  // one passes through. A smaller distance then was not that of rounding.
+  const std::int64_t most_forces = std::max(runs_.forces_within(rules.much_work),
+                                            static_cast<std::int64_t>(rules.doubt * rules.doubt) *
+                                                judge.summary.counts.force_evaluations);
+  bool is_run = false;
+  double value = judge.value;
+  for (int i = 0; i < 3; ++i, value *= rules.small) {
+    const auto left = stage.distances_out_of_symmetry(
+        judge, *judge.method, value, {.seconds = runs_.seconds_left(), .forces = most_forces});
+    if (left.empty()) break;
+    const double by = beyond_own_error(
+        judge, stage.of() == AccuracyOf::path ? std::ranges::max(left) : left.back());
+    if (!is_run || by < conditioning_->leaves_by) {
+      conditioning_->leaves_by = by;
+      conditioning_->differences_left = left;
+    }
+    is_run = true;
+    if (by <= rules.part_of_judge * accuracy || judge.method->knob != Knob::rtol ||
+        rules.small * value < least_accuracy)
+      break;
+  }
+  conditioning_->share =
+      std::max(conditioning_->share, rules.doubt * rules.doubt * conditioning_->leaves_by);
+  return is_run;
+}
+
+// The error that states between steps may have beyond those that were seen: in some steps it is as
+// large as the tolerance.
+double Check::between_steps(const Trial& trial) const {
+  const Rules& rules = runs_.rules();
+  if (!trial.method->is(Trait::interpolates) || runs_.stage().rests()) return 0;
+  switch (runs_.stage().of()) {
+    case AccuracyOf::positions:
+      return 0;
+    case AccuracyOf::path:
+      return rules.doubt * trial.value;
+    case AccuracyOf::energy:
+      return rules.small * trial.value;
+  }
+  return 0;
+}
+
+std::optional<Bound> Check::bound(const Trial& trial) const {
+  if (!trial.reached_end() || judges_.empty()) return {};
+  const Stage& stage = runs_.stage();
+  const Rules& rules = runs_.rules();
+  const double twice = rules.doubt * rules.doubt;
+  const double rounding = twice * machine_epsilon + (conditioning_ ? conditioning_->share : 0);
+  if (stage.of() == AccuracyOf::energy) {
+    // The largest error between the looks and steps may be larger than at them.
+    const double factor = trial.method->is(Trait::interpolates) ? twice : rules.doubt;
+    const double between = std::max(factor * stage.energy_error(trial), between_steps(trial));
+    return Bound{between + rounding};
+  }
+  std::optional<Bound> least;
+  for (const auto& [by, own] : judges_) {
+    const bool is_itself = by == &trial;
+    // A judge's own error may be a little larger than its bound, beside a distance that is larger.
+    const double error =
+        own.error + rounding + between_steps(trial) +
+        (is_itself ? 0 : between_steps(*by) + (1 + rules.small) * runs_.distance(trial, *by));
+    if (least && least->error <= error) continue;
+    least = Bound{error, is_itself ? own.by : by, is_itself && own.by_coarser};
+  }
+  return least;
+}
+
+bool Check::is_known(const Trial& trial, double accuracy) const {
+  if (trial.is_pushed) return false;
+  const auto most = bound(trial);
+  return most && most->error <= accuracy;
+}
+
+const Trial* Check::best() const {
+  const Trial* least = nullptr;
+  double error = std::numeric_limits<double>::infinity();
+  for (const Trial& trial : runs_.all()) {
+    if (trial.is_pushed) continue;
+    const auto own = bound(trial);
+    if (!own || own->error >= error) continue;
+    error = own->error;
+    least = &trial;
+  }
+  return least;
+}
+
+const Trial* Check::fastest(double accuracy) const {
+  const Trial* least = nullptr;
+  for (const Trial& trial : runs_.all()) {
+    if ((!least || trial.seconds < least->seconds) && is_known(trial, accuracy)) least = &trial;
+  }
+  return least;
+}
+
+}  // namespace qddot::inline measure

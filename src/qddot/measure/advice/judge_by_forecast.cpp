@@ -1,0 +1,157 @@
+// Pairs of runs that a forecast chooses, where runs with error control would take long.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/advice/step_cost.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+
+namespace qddot::inline measure {
+namespace {
+
+// The factor by which w_max grows over the path, from the growth of its bound at some places: a
+// bound costs as much as about 17 forces.
+double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
+                           std::size_t places) {
+  if (model.system().stiffness_is_constant() || !(bound > 0)) return 1;
+  double most = bound;
+  for (std::size_t i = 1; i <= places; ++i)
+    most = std::max(most, frequency_bound(model.system(), path[i * path.size() / places - 1].q));
+  return most / bound;
+}
+
+// The explicit method of fixed steps that is stable with the fewest forces: Verlet's.
+const Method& of_fewest_forces(const System& system) {
+  const Method* best = nullptr;
+  double most = 0;
+  for (const Method& method : methods()) {
+    if (!is_forecast_by_frequency(method) || !applies_to(method, system)) continue;
+    const double limit = linear_limit(method) / forces_a_step(method);
+    if (limit > most) best = &method;
+    most = std::max(most, limit);
+  }
+  return *best;
+}
+
+}  // namespace
+
+// The first run: near the stability limit, with shorter steps if it fails or its energy grows.
+const Trial* Search::survey() {
+  const Method& method = of_fewest_forces(system_);
+  const double bound = runs_.bound_of_w(), limit = linear_limit(method);
+  // Products with K give a value that is some percent too small. Forces that push away from the
+  // start bring no frequency; the motion is then as fast as the bound.
+  w_start_ = std::min(bound, frequency_at_least(system_, model_.initial().q));
+  if (w_start_ < rules_.small * bound) w_start_ = bound;
+  double steps =
+      std::max(rules_.places, std::ceil(until_ * w_start_ / (limit * rules_.clearly_below)));
+  for (int i = 0; i < static_cast<int>(rules_.rounds);
+       ++i, steps = std::ceil(rules_.doubt * steps)) {
+    const Trial& trial = runs_.make(method, until_ / steps);
+    if (trial.reached_end() && trial.summary.energy_growth < rules_.doubt) return &trial;
+    const Outcome outcome = trial.summary.outcome;
+    if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) break;
+  }
+  return nullptr;
+}
+
+// Whether there is a forecast; begins one along the trial if its motion vibrates.
+bool Search::may_forecast(const Trial& trial) {
+  if (forecast_) return true;
+  double w = runs_.bound_of_w();
+  for (const State& state : trial.path) w = std::max(w, frequency_bound(system_, state.q));
+  if (!(w > 0) || !std::isfinite(w)) return false;
+  forecast_.emplace(runs_, trial.path, w);
+  return true;
+}
+
+// The explicit run of fixed steps that is expected to have the error in the least time; as a check
+// of a run, whatever doubt there is about the ratio of the two errors. Errors of such runs fall by
+// their order from the first one on. The time of a method that was not seen counts `unseen` times.
+std::optional<Candidate> Search::explicit_candidate(double error, const Method* checked,
+                                                    double unseen) const {
+  std::optional<Candidate> best;
+  double least = INFINITY;
+  for (const Candidate& c : forecast_->candidates(error)) {
+    if (!is_forecast_by_frequency(*c.method) || runs_.has(*c.method, c.value)) continue;
+    const double doubt = checked ? forecast_->doubt(*c.method, *checked) : 1;
+    const auto own = doubt > 1 ? forecast_->candidate(*c.method, error / doubt) : c;
+    // Largest steps are limited, and whole numbers of steps rounded.
+    const double most = (1 + rules_.small * rules_.small) * error / doubt;
+    if (!own || own->error > most) continue;
+    const double seconds =
+        own->seconds * (forecast_->has_seen(*c.method) || c.method == checked ? 1 : unseen);
+    if (seconds >= least) continue;
+    least = seconds;
+    best = own;
+  }
+  return best;
+}
+
+// A run chosen to have a part of the accuracy as its error, and a run that checks it; the check
+// begins one rounding away. Each distance corrects the forecast for the next pair.
+bool Search::judge_by_forecast(double accuracy) {
+  const Trial* first = survey();
+  if (!first) return false;
+  runs_.measure_by(*first);
+  const double growth = growth_of_frequency(model_, first->path, runs_.bound_of_w(),
+                                            static_cast<std::size_t>(rules_.places));
+  // The bound of w_max may grow more than w_max does. The run was stable.
+  forecast_.emplace(runs_, first->path,
+                    std::min(w_start_ * growth, linear_limit(*first->method) / first->value));
+  const double aim = rules_.doubt * rules_.part_of_judge * accuracy;
+  const Trial* tried = first;
+  for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
+       ++round) {
+    const double unseen = round == 0 ? 1 : rules_.doubt * rules_.doubt;
+    double error = forecast_->error(*tried->method, tried->value);
+    if (!(error <= aim)) {
+      const auto next = explicit_candidate(aim, nullptr, unseen);
+      if (!next) return false;
+      const Trial& trial = runs_.make(*next->method, next->value);
+      forecast_->learn(check_);
+      if (!trial.reached_end()) continue;
+      tried = &trial;
+      error = forecast_->error(*trial.method, trial.value);
+    }
+    const auto chosen = explicit_candidate(error / rules_.finer, tried->method, unseen);
+    if (!chosen) return false;
+    const Trial& checked = runs_.make_pushed(*chosen->method, chosen->value);
+    forecast_->learn(check_);
+    if (!checked.reached_end()) continue;
+    runs_.measure_by(checked);
+    const double between = runs_.distance_on_the_way(*tried, checked);
+    const double share = std::max(1 / rules_.finer, chosen->error / error);
+    // The energy that a run gains bounds its error from below, as the motion keeps it.
+    const double kinetic = runs_.stage().scales().kinetic;
+    const double gained = kinetic > 0 ? checked.energy_gain / kinetic : 0;
+    check_.accept(*tried, {rules_.doubt * between / (1 - share), &checked});
+    // Where errors do not fall by their order, the check's is still the smaller one by a half.
+    check_.accept(checked, {std::max(between, rules_.small * gained), tried, true});
+    forecast_->learn(check_);
+    forecast_->learn(*tried, between / (1 - share));
+    // The check's own bound may do where that of the run does not.
+    const Trial* known = tried;
+    if (!check_.is_known(*tried, accuracy) &&
+        check_.error_of(checked) <= rules_.clearly_below * accuracy)
+      known = &runs_.make(*checked.method, checked.value);
+    if (check_.is_known(*known, accuracy)) {
+      check_.set(Conditioning{});  // the check's distance has it
+      return check_.condition_symmetry(*first, accuracy) && check_.is_known(*known, accuracy);
+    }
+    // Runs that should be near each other and are not: rounding may be the reason. The first run
+    // tells cheaply whether it leaves nothing known.
+    if (between > rules_.small) {
+      check_.condition(*first, accuracy);
+      if (!check_.is_hopeless(rules_.small)) check_.set({});
+    }
+    if (round > 0 && !check_.conditioning()) check_.condition(*tried, accuracy);
+    if (check_.is_hopeless(accuracy)) return false;
+  }
+  return false;
+}
+
+}  // namespace qddot::inline measure

@@ -1,0 +1,192 @@
+// Runs with error control, and the motion in closed form, as judges.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "qddot/algebra/symbolic_factorization.hpp"
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/model/machine_epsilon.hpp"
+
+namespace qddot::inline measure {
+
+// Three runs of one method with error control, at tolerances that fall by tens. If they draw
+// together, the finest is within the distance of the finer two.
+bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left) {
+  // Errors of implicit methods follow their tolerances less closely.
+  const double doubt = method.is(Trait::implicit) ? rules_.doubt * rules_.doubt : rules_.doubt;
+  const Stage& stage = runs_.stage();
+  std::vector<const Trial*> runs;
+  for (double rtol = std::min(accuracy, rules_.largest_tolerance); rtol >= least_accuracy;
+       rtol /= 10) {
+    if (runs_.seconds_left() <= 0 || forces_left <= 0) break;
+    // Three runs and the repetition of the finest take about six times as long as the first.
+    const bool is_first = runs.empty();
+    const Trial& trial =
+        runs_.make(method, rtol, {.forces = is_first ? forces_left / 6 : forces_left});
+    forces_left -= trial.summary.counts.force_evaluations;
+    if (!trial.path.empty()) runs_.measure_by(trial);
+    if (!trial.reached_end()) {
+      if (trial.summary.outcome == Outcome::over_budget || !is_first) break;
+      continue;
+    }
+    if (stage.rests()) {
+      check_.accept(trial, {});
+      check_.condition(trial, accuracy);
+      return !check_.is_hopeless(accuracy);
+    }
+    if (stage.rounding() > accuracy) {
+      // The motion is too small beside the positions' own rounding.
+      check_.set(Conditioning{.effect = stage.rounding(), .share = stage.rounding()});
+      return false;
+    }
+    if (!runs.empty() && runs_.distance_on_the_way(*runs.back(), trial) == 0)
+      runs.pop_back();  // the same steps, which judge nothing
+    runs.push_back(&trial);
+    if (runs.size() < 3) continue;
+    const Trial &c = *runs.back(), &b = *runs[runs.size() - 2], &a = *runs[runs.size() - 3];
+    const double outer = runs_.distance_on_the_way(a, c), inner = runs_.distance_on_the_way(b, c);
+    const bool together = inner <= rules_.drawn_together * outer;
+    if (!together && doubt * std::max(inner, outer) > accuracy / 2) continue;
+    check_.accept(a, {doubt * std::max(runs_.distance(a, c), runs_.distance(a, b)), &c});
+    check_.accept(b, {doubt * std::max(inner, runs_.distance(b, c)), &c});
+    check_.accept(c, {doubt * inner, &b, true});
+    if (check_.error_of(c) > rules_.part_of_judge * accuracy) continue;
+    check_.condition(c, accuracy);
+    return !check_.is_hopeless(accuracy);
+  }
+  finest_ = runs.size() < 3 ? nullptr : runs.back();
+  return false;
+}
+
+// The methods with error control that fit the system: first the one whose order suits a judge, then
+// the one of the highest order, or the other way round.
+std::vector<const Method*> Search::with_error_control(bool implicitly, double accuracy) const {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) {
+    if (method.knob != Knob::rtol || method.is(Trait::implicit) != implicitly ||
+        !method.stock_of.empty() || !applies_to(method, system_) ||
+        method.asks(Need::split_forces) ||
+        (system_.has_massless() && !method.is(Trait::accepts_massless)))
+      continue;
+    all.push_back(&method);
+  }
+  const auto is_own = [](const Method* method) { return method->family != Family::sundials; };
+  if (std::ranges::any_of(all, is_own)) std::erase_if(all, std::not_fn(is_own));
+  if (all.size() < 2) return all;
+  const Method* suited = *std::ranges::min_element(all, {}, [&](const Method* method) {
+    return std::abs(method->order - rules_.order_of_judge);
+  });
+  const Method* highest = *std::ranges::max_element(all, {}, &Method::order);
+  if (suited == highest) return {suited};
+  if (accuracy < rules_.small_accuracy) std::swap(suited, highest);
+  return {suited, highest};
+}
+
+bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces) {
+  for (const Method* method : with_error_control(implicitly, accuracy)) {
+    if (judge_by_tolerance(*method, accuracy, most_forces)) return true;
+    // A motion that rounding leaves unknown is so for all methods.
+    if (check_.is_hopeless(accuracy)) return false;
+  }
+  return false;
+}
+
+bool Search::judge_in_closed_form(double accuracy) {
+  if (!system_.stiffness_is_constant()) return false;
+  // An eigenproblem of n unknowns takes about as long as the force on n^3 of them.
+  double cubes = 0;
+  for (const Index n : model_.unknowns_by_part()) cubes += std::pow(static_cast<double>(n), 3);
+  if (cubes >
+      std::max(rules_.small * rules_.little_work, runs_.steps_of_verlet() * runs_.work_of_force()))
+    return false;
+  const auto exact = std::ranges::find_if(methods(), [&](const Method& method) {
+    return method.order == 0 && applies_to(method, system_);
+  });
+  if (exact == methods().end()) return false;
+  const Trial& trial = runs_.make(*exact, until_);
+  if (!trial.reached_end()) return false;
+  runs_.measure_by(trial);
+  const Stage& stage = runs_.stage();
+  // A motion computed mode by mode has w_max^2 to its last digit. So a slower frequency w has an
+  // error of w_max^2 / (2 w) roundings, for a time t.
+  const Scales& scales = stage.scales();
+  const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
+  const double w = runs_.bound_of_w(),
+               phase = w * until_ * (slow > 0 ? std::max(1.0, w / slow) : 1);
+  const double roundings = stage.rests() ? 0 : rules_.doubt * rules_.doubt * (1 + phase);
+  check_.accept(trial, {roundings * machine_epsilon});
+  if (stage.of() == AccuracyOf::energy) {
+    check_.set(Conditioning{});  // all motions keep it
+  } else {
+    check_.condition(trial, accuracy);
+  }
+  if (!check_.conditioning() && stage.is_reduced_by_symmetry()) {
+    // Out of the line the motion is not linear, so that a run with error control is compared.
+    const double tolerance = std::max(least_accuracy, rules_.small * rules_.small * accuracy);
+    for (const Method* method : with_error_control(false, tolerance)) {
+      const Trial& other =
+          runs_.make(*method, tolerance, {.forces = runs_.forces_within(rules_.much_work)});
+      check_.set(Conditioning{});
+      if (other.reached_end() && check_.condition_symmetry(other, accuracy)) break;
+      check_.set({});
+    }
+  }
+  return roundings * machine_epsilon <= accuracy;
+}
+
+// The forces that an implicit run may evaluate if it is to take a part of the work of Verlet's
+// method; zero if that is no more than a few steps, and for forces of the caller's own: a long
+// implicit step may leap over a core that repels. It solves with each force, and factorises about
+// once a step, which has about as many forces as its order.
+std::int64_t Search::forces_worth_implicit_steps(double accuracy) const {
+  const auto all = with_error_control(true, accuracy);
+  if (!runs_.stage().has_springs() || all.empty()) return 0;
+  const SymbolicFactorization factors = analyse(system_.stiffness_pattern());
+  const double operations = 4 * factors.entries() + factors.operations() / all.front()->order;
+  const double of_force = 1 + operations / (rules_.operations * runs_.work_of_force());
+  const double worth = rules_.short_cut * runs_.steps_of_verlet() / of_force;
+  return worth > rules_.places ? static_cast<std::int64_t>(worth) : 0;
+}
+
+// The energy of a run is its own judge, as the exact motion keeps it. A run with error control
+// gives the scale: the largest kinetic energy.
+bool Search::judge_energy(double accuracy) {
+  std::int64_t forces_left = runs_.forces_within(rules_.much_work);
+  const bool implicitly = system_.has_massless();
+  const Trial* last = nullptr;
+  for (const Method* method : with_error_control(implicitly, accuracy)) {
+    for (double rtol = rules_.small * rules_.largest_tolerance;
+         rtol >= least_accuracy && forces_left > 0; rtol /= 10) {
+      const Trial& trial = runs_.make(*method, rtol, {.forces = forces_left});
+      forces_left -= trial.summary.counts.force_evaluations;
+      if (!trial.reached_end()) {
+        // Long steps may find a cable slack that is taut.
+        if (last || trial.summary.outcome == Outcome::over_budget) break;
+        continue;
+      }
+      runs_.measure_by(trial);
+      last = &trial;
+      check_.accept(trial, {});
+      const double rounding = runs_.stage().energy_rounding(trial);
+      check_.set(Conditioning{.effect = rounding, .share = rounding});
+      if (check_.is_known(trial, accuracy)) return true;
+      if (check_.is_hopeless(accuracy)) return false;
+    }
+    if (last) break;
+  }
+  if (!last || implicitly || !may_forecast(*last)) return false;
+  // Steps of fixed length may keep an energy that is small beside its rounding.
+  forecast_->learn(check_);
+  for (int i = 0; i < static_cast<int>(rules_.rounds); ++i) {
+    const auto next = promised(rules_.part_of_judge * accuracy, INFINITY);
+    if (!next) break;
+    const Trial& trial =
+        runs_.make(*next->method, next->value, {.forces = runs_.forces_within(rules_.much_work)});
+    if (check_.is_known(trial, accuracy)) return true;
+    forecast_->learn(check_);
+  }
+  return false;
+}
+
+}  // namespace qddot::inline measure

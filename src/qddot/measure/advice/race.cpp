@@ -1,0 +1,82 @@
+// The last phase of a search: runs that may be faster than its answer.
+#include <algorithm>
+#include <cmath>
+
+#include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/motion/vibrating_modes.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
+
+namespace qddot::inline measure {
+
+// The fastest run, not made yet, that is expected to have the error in less than `seconds`.
+std::optional<Candidate> Search::promised(double error, double seconds) const {
+  for (const Candidate& c : forecast_->candidates(error)) {
+    if (c.seconds > seconds) break;
+    if (!runs_.has(*c.method, c.value)) return c;
+  }
+  return {};
+}
+
+// The first run of a method that has no forecast without one: of those that may be faster than the
+// answer, the one that evaluates the fewest forces.
+std::optional<Candidate> Search::first_of_method(const Trial& answer, double accuracy) const {
+  std::optional<Candidate> cheapest;
+  double fewest = static_cast<double>(answer.summary.counts.force_evaluations);
+  for (const Method& method : methods()) {
+    const bool is_implicit = method.is(Trait::implicit);
+    if (is_forecast_by_frequency(method) || method.order < 2 || !applies_to(method, system_) ||
+        method.family == Family::sundials || method.asks(Need::laplacian) ||
+        (system_.has_massless() && !method.is(Trait::accepts_massless)) ||
+        (is_implicit && runs_.stage().of() == AccuracyOf::energy) ||
+        std::ranges::find(runs_.all(), &method, &Trial::method) != runs_.all().end())
+      continue;
+    // Forces that the run evaluates at least: a step of order p takes about p of them.
+    double value = std::clamp(accuracy, 10 * least_accuracy, rules_.largest_tolerance), forces = 0;
+    if (method.knob == Knob::step_size) {
+      // Steps that resolve the motion's own frequency of order 2, or the soft forces.
+      const double own = method.asks(Need::split_forces)
+                             ? resolved_frequency(method, system_, model_.initial().q)
+                             : forecast_->own().at(2);
+      double steps = std::max(rules_.places, std::ceil(until_ * own));
+      if (has_linear_step(method))
+        steps = std::max(steps, std::ceil(until_ / forecast_->step_by_frequency(method, accuracy)));
+      value = until_ / steps;
+      forces = steps * (is_implicit ? rules_.implicit_step : 1);
+    } else {
+      // Steps of order p leave the accuracy if h w_p is its p-th root.
+      double steps =
+          until_ * forecast_->own().at(method.order) * std::pow(accuracy, -1.0 / method.order);
+      if (method.is(Trait::bounds_steps)) steps = std::max(steps, until_ * forecast_->w_motion());
+      forces = steps * (is_implicit ? rules_.implicit_step : method.order);
+    }
+    if (forces >= fewest) continue;
+    fewest = forces;
+    cheapest = {&method, value};
+  }
+  return cheapest;
+}
+
+const Trial* Search::race(const Trial* answer, double accuracy) {
+  if (answer->method->order == 0 || !check_.has_judge()) return answer;
+  const double end =
+      runs_.seconds() + std::max(rules_.unnoticed, rules_.part_of_answer * answer->seconds);
+  if (!may_forecast(*answer)) return answer;
+  forecast_->learn(check_);
+  const double aim = (1 - rules_.doubt * rules_.part_of_judge) * accuracy;
+  while (runs_.seconds_left() > 0) {
+    const double left = end - runs_.seconds();
+    if (left <= 0) break;
+    const double seconds = std::min(left, rules_.clearly_below * answer->seconds);
+    std::optional<Candidate> next = promised(aim, seconds);
+    if (!next) next = first_of_method(*answer, accuracy);
+    if (!next) break;
+    constexpr double of_clock = 1e-5;  // [s], the time to see that it is over
+    const Trial& trial = runs_.make(*next->method, next->value, {.seconds = seconds + of_clock});
+    forecast_->learn(check_);
+    if (trial.seconds < answer->seconds && check_.is_known(trial, accuracy)) answer = &trial;
+  }
+  return answer;
+}
+
+}  // namespace qddot::inline measure

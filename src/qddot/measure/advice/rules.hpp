@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace qddot::inline measure {
+
+// The numbers by which a search decides. The study `advice --rules` asks the training cases again
+// with each of them halved and doubled: docs/data/advice_rules has what becomes of the bars, the
+// refusals and the work. Errors are relative to the motion.
+struct Rules {
+  // Estimates of errors count this many times; twice the factor where two estimates follow each
+  // other.
+  double doubt = 2;
+  // A small part: what is beside it counts alone.
+  double small = 0.1;
+  // The part of a stability limit, or of a time, that is clearly below it.
+  double clearly_below = 0.9;
+  // Looks at a motion if only its end counts, as each costs a step; and at a path.
+  double looks = 24, looks_at_a_path = 400;
+  // Motions that change in the same way are seen at so many places.
+  double places = 10;
+
+  // A judge's own error is at most this part of the accuracy.
+  double part_of_judge = 0.2;
+  // Three runs draw together if the finer two differ by at most this part of what the outer two do.
+  double drawn_together = 1.0 / 3;
+  // Tolerances begin at the accuracy, or here.
+  double largest_tolerance = 1e-2;
+  // The order that suits a judge; below this accuracy the highest order does.
+  double order_of_judge = 8, small_accuracy = 1e-8;
+
+  // Work is counted in evaluations of f, times unknowns and what a call costs beside them.
+  double call = 20;
+  // Runs with error control judge a motion if they take no more work than this, about 20 ms.
+  double little_work = 5e6;
+  // The work of the last attempts before an accuracy is refused.
+  double much_work = 1e8;
+  // An implicit judge may take this part of the work of Verlet's method.
+  double short_cut = 0.3;
+  // Operations of a factorisation that take as long as the force on an unknown.
+  double operations = 10;
+
+  // The check of a run with fixed steps has an error that is expected to be smaller by this factor.
+  double finer = 4;
+  // Rounds of choosing, running and learning.
+  double rounds = 8;
+  // Corrections of a forecast by errors of methods whose orders differ by this say nothing.
+  double unrelated_orders = 8;
+
+  // The time [s] that nobody notices, and the part of the answer's time, for runs that may be
+  // faster.
+  double unnoticed = 0.02, part_of_answer = 0.25;
+  // Explicit forces that take as long as an implicit step.
+  double implicit_step = 20;
+  // Displacements of no more roundings of the positions than this are no motion.
+  double rest = 30;
+};
+
+// Each rule with its name.
+inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 23> all_rules = {{
+    {"doubt", &Rules::doubt},
+    {"small", &Rules::small},
+    {"clearly_below", &Rules::clearly_below},
+    {"looks", &Rules::looks},
+    {"looks_at_a_path", &Rules::looks_at_a_path},
+    {"places", &Rules::places},
+    {"part_of_judge", &Rules::part_of_judge},
+    {"drawn_together", &Rules::drawn_together},
+    {"largest_tolerance", &Rules::largest_tolerance},
+    {"order_of_judge", &Rules::order_of_judge},
+    {"small_accuracy", &Rules::small_accuracy},
+    {"call", &Rules::call},
+    {"little_work", &Rules::little_work},
+    {"much_work", &Rules::much_work},
+    {"short_cut", &Rules::short_cut},
+    {"operations", &Rules::operations},
+    {"finer", &Rules::finer},
+    {"rounds", &Rules::rounds},
+    {"unrelated_orders", &Rules::unrelated_orders},
+    {"unnoticed", &Rules::unnoticed},
+    {"part_of_answer", &Rules::part_of_answer},
+    {"implicit_step", &Rules::implicit_step},
+    {"rest", &Rules::rest},
+}};
+
+}  // namespace qddot::inline measure
