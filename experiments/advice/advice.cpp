@@ -26,6 +26,7 @@
 
 #include "experiments/advice/case_result.hpp"
 #include "experiments/advice/hard_worth.hpp"
+#include "experiments/advice/rule_effects.hpp"
 #include "experiments/advice/worth.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
@@ -50,13 +51,14 @@ int main(int argc, char** argv) {
   auto hard = p.flag("--hard", "draw hard motions: small ones, judged against their true motion");
   auto scenes =
       p.flag("--scenes", "with --hard, write the scene of each case, and print a line for each");
+  auto rules = p.flag("--rules", "with --hard, change each rule of the search by a factor of two");
   p.out("the folder for cases.csv and worth.csv");
 
   // Judges the cases of these numbers, piece by piece, and tells the results.
   const auto judge = [&]<class Result>(RowTable<Result>& table, const auto& result_of_number,
                                        const auto& tell) {
     std::vector<std::uint64_t> numbers;
-    Shares shares{.chosen_by = {"--cases", "--first", "--hard"}};
+    Shares shares{.chosen_by = {"--cases", "--first", "--hard", "--rules"}};
     for (int i = 0; i < cases; ++i) {
       numbers.push_back(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i));
       shares.names.push_back(std::to_string(numbers.back()));
@@ -125,5 +127,30 @@ int main(int argc, char** argv) {
           fmt::print("{}\n{}", fmt::join(lines_of(results, scenes), "\n"), in_columns(figures));
         });
   };
-  return p.run(argc, argv, [&] { return hard ? judge_hard_cases() : judge_cases(); });
+  const auto judge_rules = [&] {
+    const Columns<RuledCase> case_columns = {{"case", &RuledCase::name},
+                                             {"conditioning", &RuledCase::conditioning}};
+    auto& effects = p.table<RuleEffect>("rules.csv", {{"rule", &RuleEffect::rule},
+                                                      {"value", &RuleEffect::value},
+                                                      {"factor", &RuleEffect::factor},
+                                                      {"within_bar", &RuleEffect::within_bar},
+                                                      {"refused", &RuleEffect::refused},
+                                                      {"forces", &RuleEffect::forces}});
+    return judge(
+        p.table("ruled_cases.csv", case_columns),
+        [&](std::uint64_t number) { return ruled_case(hard_case(number)); },
+        [&](const std::vector<RuledCase>& results) {
+          fmt::print("{:<18} {:>8} {:>7} {:>11} {:>8} {:>8}\n", "rule", "value", "factor",
+                     "within bar", "refused", "forces");
+          for (const RuleEffect& effect : effects_of(results)) {
+            effects.add(effect);
+            fmt::print("{:<18} {:>8.3g} {:>7.2g} {:>10.2f}% {:>7.2f}% {:>8.2f}\n", effect.rule,
+                       effect.value, effect.factor, effect.within_bar, effect.refused,
+                       effect.forces);
+          }
+        });
+  };
+  return p.run(argc, argv, [&] {
+    return hard && rules ? judge_rules() : hard ? judge_hard_cases() : judge_cases();
+  });
 }

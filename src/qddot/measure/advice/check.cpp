@@ -85,20 +85,15 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
   return is_run;
 }
 
-// The error that states between steps may have beyond those that were seen: in some steps it is as
-// large as the tolerance.
+// The error that states between steps may have beyond those that were seen: in some steps it is a
+// part of the tolerance.
 double Check::between_steps(const Trial& trial) const {
+  const Stage& stage = runs_.stage();
+  if (stage.of() == AccuracyOf::positions || stage.rests() ||
+      !trial.method->is(Trait::interpolates))
+    return 0;
   const Rules& rules = runs_.rules();
-  if (!trial.method->is(Trait::interpolates) || runs_.stage().rests()) return 0;
-  switch (runs_.stage().of()) {
-    case AccuracyOf::positions:
-      return 0;
-    case AccuracyOf::path:
-      return rules.doubt * trial.value;
-    case AccuracyOf::energy:
-      return rules.small * trial.value;
-  }
-  return 0;
+  return rules.doubt * rules.doubt * rules.small * trial.value;
 }
 
 std::optional<Bound> Check::bound(const Trial& trial) const {

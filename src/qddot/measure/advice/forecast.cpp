@@ -136,9 +136,10 @@ double Forecast::error_seen(const Trial& trial, const Trial& by) const {
 void Forecast::learn(const Check& check) {
   for (const Trial& trial : runs_.all()) {
     if (trial.reached_end() || trial.method->knob != Knob::step_size) continue;
-    // Longer steps are expected to fail, too.
-    const auto [place, is_new] = failed_.try_emplace(trial.method, trial.value);
-    if (!is_new) place->second = std::min(place->second, trial.value);
+    // Longer steps are expected to fail, too, and all to take too long where one did.
+    const double least = trial.summary.outcome == Outcome::over_budget ? 0 : trial.value;
+    const auto [place, is_new] = failed_.try_emplace(trial.method, least);
+    if (!is_new) place->second = std::min(place->second, least);
   }
   const Trial* by = check.judge();
   double least = by ? check.error_of(*by) : unknown;

@@ -117,7 +117,8 @@ bool Search::judge_in_closed_form(double accuracy) {
   const double roundings = stage.rests() ? 0 : rules_.doubt * rules_.doubt * (1 + phase);
   check_.accept(trial, {roundings * machine_epsilon});
   if (stage.of() == AccuracyOf::energy) {
-    check_.set(Conditioning{});  // all motions keep it
+    const double rounding = stage.energy_rounding(trial);
+    check_.set(Conditioning{.effect = rounding, .share = rounding});  // all motions keep it
   } else {
     check_.condition(trial, accuracy);
   }

@@ -136,12 +136,11 @@ double Stage::rounding() const {
   return largest;
 }
 
-double Stage::energy_error(const Trial& trial) const {
-  return scales_.kinetic > 0 ? trial.energy_gap / scales_.kinetic : trial.energy_gap;
-}
+double Stage::energy_scale() const { return scales_.kinetic > 0 && !rests_ ? scales_.kinetic : 1; }
+
+double Stage::energy_error(const Trial& trial) const { return trial.energy_gap / energy_scale(); }
 
 double Stage::energy_rounding(const Trial& trial) const {
-  if (!(scales_.kinetic > 0)) return 0;
   double largest = 0;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(-machine_epsilon, machine_epsilon);
@@ -150,7 +149,7 @@ double Stage::energy_rounding(const Trial& trial) const {
     for (double& q : seen.q) q *= 1 + share(random);
     largest = std::max(largest, std::abs(model_.energy(seen) - energy));
   }
-  return largest / scales_.kinetic;
+  return largest / energy_scale();
 }
 
 double Stage::distance(const Trial& one, const Trial& other) const {

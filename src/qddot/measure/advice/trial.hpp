@@ -106,6 +106,8 @@ class Stage {
 
  private:
   void reach_to_pins();
+  // The largest kinetic energy, or 1 J if nothing moves.
+  double energy_scale() const;
   Trial run_from(const ReducedScene& model, const State& start, const Method& method, double value,
                  const Limits& limits) const;
 
