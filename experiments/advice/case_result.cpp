@@ -148,8 +148,10 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
     result.advised_seconds = take->seconds;
   }
   try {
-    const Reference reference = make_reference(model, drawn.until, reference_seconds);
-    if (reference.certified.position > good_reference * drawn.accuracy) {
+    const Reference reference = make_reference(model, drawn.until, reference_seconds, &drawn.scene);
+    if (reference.is_only_symmetric()) {
+      result.left_out = "the drawn motion leaves its symmetry";
+    } else if (reference.certified.position > good_reference * drawn.accuracy) {
       result.left_out = "the reference is not certified to three tenths of the accuracy";
       result.certified = reference.certified.position;
     } else {

@@ -63,15 +63,23 @@ double Forecast::error(const Method& method, double value) const {
   return seen->second.error * std::pow(value / seen->second.value, power_of_error(method));
 }
 
+// The number of steps, over that of the run that was seen. For error-controlled methods it falls as
+// rtol^(1/order).
+double Forecast::steps_over(const Method& method, double value, const Seen& seen) const {
+  return std::pow(seen.value / value, method.knob == Knob::rtol ? 1.0 / method.order : 1);
+}
+
+double Forecast::forces(const Method& method, double value) const {
+  const auto seen = seen_.find(&method);
+  if (seen != seen_.end()) return seen->second.forces * steps_over(method, value, seen->second);
+  if (!is_forecast_by_frequency(method)) return unknown;
+  return forces_a_step(method) * std::max(1.0, std::round(until_ / value));
+}
+
 double Forecast::seconds(const Method& method, double value) const {
   const auto seen = seen_.find(&method);
-  if (seen != seen_.end()) {
-    // The number of steps of error-controlled methods falls as rtol^(1/order).
-    const double share = method.knob == Knob::rtol ? 1.0 / method.order : 1;
-    return seen->second.seconds * std::pow(seen->second.value / value, share);
-  }
-  if (!is_forecast_by_frequency(method)) return unknown;
-  return forces_a_step(method) * force_seconds_ * std::max(1.0, std::round(until_ / value));
+  if (seen != seen_.end()) return seen->second.seconds * steps_over(method, value, seen->second);
+  return force_seconds_ * forces(method, value);
 }
 
 double Forecast::largest_step(const Method& method) const {
@@ -112,7 +120,8 @@ std::optional<Candidate> Forecast::candidate(const Method& method, double error)
     if (method.recurrence_roots && steps < 2 * method.order) return {};
     value = until_ / steps;
   }
-  return Candidate{&method, value, this->error(method, value), seconds(method, value)};
+  return Candidate{&method, value, this->error(method, value), seconds(method, value),
+                   forces(method, value)};
 }
 
 std::vector<Candidate> Forecast::candidates(double error) const {
@@ -163,7 +172,8 @@ void Forecast::learn(const Check& check) {
 void Forecast::learn(const Trial& trial, double error) {
   const Method& method = *trial.method;
   if (method.order == 0 || !(error > 0)) return;
-  seen_[&method] = {trial.value, error, trial.seconds};
+  seen_[&method] = {trial.value, error, trial.seconds,
+                    static_cast<double>(trial.summary.counts.force_evaluations)};
   if (!is_forecast_by_frequency(method)) return;
   const double expected = by_frequency(method, trial.value);
   if (std::isfinite(expected) && expected > 0) {

@@ -15,6 +15,7 @@ struct Candidate {
   double value = 0;    // of the knob: h [s] or rtol
   double error = 0;    // expected
   double seconds = 0;  // expected
+  double forces = 0;   // expected evaluations of f
 };
 
 // The power p of the knob to which the error is proportional.
@@ -59,13 +60,15 @@ class Forecast {
 
  private:
   struct Seen {
-    double value, error, seconds;
+    double value, error, seconds, forces;
   };
 
   double by_frequency(const Method& method, double value) const;
   double correction(const Method& method) const;
   double scale(const Method& method) const;
   double largest_step(const Method& method) const;
+  double steps_over(const Method& method, double value, const Seen& seen) const;
+  double forces(const Method& method, double value) const;
   double seconds(const Method& method, double value) const;
 
   double error_seen(const Trial& trial, const Trial& by) const;

@@ -68,9 +68,10 @@ bool Search::may_forecast(const Trial& trial) {
   return true;
 }
 
-// The explicit run of fixed steps that is expected to have the error in the least time; as a check
-// of a run, whatever doubt there is about the ratio of the two errors. Errors of such runs fall by
-// their order from the first one on. The time of a method that was not seen counts `unseen` times.
+// The explicit run of fixed steps that is expected to have the error with the fewest forces; as a
+// check of a run, whatever doubt there is about the ratio of the two errors. Errors of such runs
+// fall by their order from the first one on. Forces of a method that was not seen count `unseen`
+// times.
 std::optional<Candidate> Search::explicit_candidate(double error, const Method* checked,
                                                     double unseen) const {
   std::optional<Candidate> best;
@@ -82,10 +83,10 @@ std::optional<Candidate> Search::explicit_candidate(double error, const Method* 
     // Largest steps are limited, and whole numbers of steps rounded.
     const double most = (1 + rules_.small * rules_.small) * error / doubt;
     if (!own || own->error > most) continue;
-    const double seconds =
-        own->seconds * (forecast_->has_seen(*c.method) || c.method == checked ? 1 : unseen);
-    if (seconds >= least) continue;
-    least = seconds;
+    const bool is_known = forecast_->has_seen(*c.method) || c.method == checked;
+    const double forces = own->forces * (is_known ? 1 : unseen);
+    if (forces >= least) continue;
+    least = forces;
     best = own;
   }
   return best;
