@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "qddot/model/machine_epsilon.hpp"
 
@@ -24,33 +25,50 @@ void Check::condition(const Trial& judge, double accuracy) {
   conditioning_.reset();
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
-  // What rests does not feel one rounding, though it adds up. It is pushed by many, and the effect
-  // is in proportion.
-  const double pushed_by = stage.rests() ? std::pow(2.0, 20) : 1;
+  if (stage.rests()) return condition_rest(judge);
   Conditioning found;
   const auto repeat = [&](std::uint32_t seed) {
-    const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {seed, pushed_by});
+    const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.seed = seed});
     if (!twin.reached_end()) return false;
-    const double apart_by = runs_.distance(judge, twin) / pushed_by;
-    const double effect =
-        stage.rests() ? std::max(apart_by, machine_epsilon) : beyond_own_error(judge, apart_by);
-    if (found.differences.empty() || effect > found.effect) {
+    const double effect = beyond_own_error(judge, runs_.distance(judge, twin));
+    if (found.differences.empty() || effect > found.effect)
       found.differences = stage.distances(judge, twin);
-      for (double& difference : found.differences) difference /= pushed_by;
-    }
     found.effect = std::max(found.effect, effect);
     return true;
   };
   if (!repeat(1)) return;
   // One pair of runs may be near each other by luck. So its distance counts twice as often as the
   // largest of three.
-  found.share = rules.doubt * (stage.rests() ? rules.rest : rules.doubt) * found.effect;
-  if (!stage.rests() && found.share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
+  found.share = rules.doubt * rules.doubt * found.effect;
+  if (found.share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
     if (!repeat(2) || !repeat(3)) return;
     found.share = rules.doubt * found.effect;
   }
   conditioning_ = found;
   if (!condition_symmetry(judge, accuracy)) conditioning_.reset();
+}
+
+// What rests does not feel one rounding, though it adds up. It is pushed by many, as it was drawn,
+// and the effect is in proportion.
+void Check::condition_rest(const Trial& judge) {
+  const Stage& stage = runs_.stage();
+  const Rules& rules = runs_.rules();
+  const double roundings = std::pow(2.0, 20);
+  std::vector<double> differences;
+  if (stage.has_springs()) {
+    differences =
+        stage.distances_as_drawn(judge, *judge.method, judge.value,
+                                 {.seconds = runs_.seconds_left()}, {.roundings = roundings});
+  } else {
+    const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.roundings = roundings});
+    if (twin.reached_end()) differences = stage.distances(judge, twin);
+  }
+  if (differences.empty()) return;
+  for (double& difference : differences) difference /= roundings;
+  const double effect = std::max(machine_epsilon, std::ranges::max(differences));
+  conditioning_ = Conditioning{.effect = effect,
+                               .share = rules.doubt * rules.doubt * rules.doubt * effect,
+                               .differences = std::move(differences)};
 }
 
 bool Check::condition_symmetry(const Trial& judge, double accuracy) {
@@ -66,7 +84,7 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
   bool is_run = false;
   double value = judge.value;
   for (int i = 0; i < 3; ++i, value *= rules.small) {
-    const auto left = stage.distances_out_of_symmetry(
+    const auto left = stage.distances_as_drawn(
         judge, *judge.method, value, {.seconds = runs_.seconds_left(), .forces = most_forces});
     if (left.empty()) break;
     const double by = beyond_own_error(
@@ -89,10 +107,11 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
 // part of the tolerance.
 double Check::between_steps(const Trial& trial) const {
   const Stage& stage = runs_.stage();
-  if (stage.of() == AccuracyOf::positions || stage.rests() ||
-      !trial.method->is(Trait::interpolates))
+  if (stage.of() == AccuracyOf::positions || stage.rests() || trial.method->knob != Knob::rtol)
     return 0;
   const Rules& rules = runs_.rules();
+  // Looks end steps of the other methods, so that a run with fewer looks has longer steps.
+  if (!trial.method->is(Trait::interpolates)) return rules.doubt / rules.small * trial.value;
   return rules.doubt * rules.doubt * rules.small * trial.value;
 }
 
@@ -104,8 +123,9 @@ std::optional<Bound> Check::bound(const Trial& trial) const {
   const double rounding = twice * machine_epsilon + (conditioning_ ? conditioning_->share : 0);
   if (stage.of() == AccuracyOf::energy) {
     // The largest error between the looks and steps may be larger than at them.
-    const double factor = trial.method->is(Trait::interpolates) ? twice : rules.doubt;
-    const double between = std::max(factor * stage.energy_error(trial), between_steps(trial));
+    const bool interpolates = trial.method->is(Trait::interpolates);
+    const double seen = (interpolates ? twice : rules.doubt) * stage.energy_error(trial);
+    const double between = interpolates ? std::max(seen, between_steps(trial)) : seen;
     return Bound{between + rounding};
   }
   std::optional<Bound> least;

@@ -66,6 +66,7 @@ class Check {
   const Trial* fastest(double accuracy) const;
 
  private:
+  void condition_rest(const Trial& judge);
   double between_steps(const Trial& trial) const;
   double beyond_own_error(const Trial& trial, double apart_by) const;
 

@@ -140,8 +140,12 @@ bool Search::judge_by_forecast(double accuracy) {
         check_.error_of(checked) <= rules_.clearly_below * accuracy)
       known = &runs_.make(*checked.method, checked.value);
     if (check_.is_known(*known, accuracy)) {
-      check_.set(Conditioning{});  // the check's distance has it
-      return check_.condition_symmetry(*first, accuracy) && check_.is_known(*known, accuracy);
+      // The first run tells cheaply what rounding does; one that resolves the motion, if need be.
+      for (const Trial* repeated : {first, tried}) {
+        check_.condition(*repeated, accuracy);
+        if (check_.conditioning() && check_.is_known(*known, accuracy)) return true;
+      }
+      return false;
     }
     // Runs that should be near each other and are not: rounding may be the reason. The first run
     // tells cheaply whether it leaves nothing known.

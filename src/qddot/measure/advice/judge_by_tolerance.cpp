@@ -114,8 +114,11 @@ bool Search::judge_in_closed_form(double accuracy) {
   const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
   const double w = runs_.bound_of_w(),
                phase = w * until_ * (slow > 0 ? std::max(1.0, w / slow) : 1);
-  const double roundings = stage.rests() ? 0 : rules_.doubt * rules_.doubt * (1 + phase);
-  check_.accept(trial, {roundings * machine_epsilon});
+  // Positions are sums of many numbers as large as coordinates.
+  const double error = stage.rests() ? 0
+                                     : rules_.doubt * rules_.doubt * machine_epsilon * (1 + phase) +
+                                           rules_.rest * stage.rounding();
+  check_.accept(trial, {error});
   if (stage.of() == AccuracyOf::energy) {
     const double rounding = stage.energy_rounding(trial);
     check_.set(Conditioning{.effect = rounding, .share = rounding});  // all motions keep it
@@ -133,7 +136,7 @@ bool Search::judge_in_closed_form(double accuracy) {
       check_.set({});
     }
   }
-  return roundings * machine_epsilon <= accuracy;
+  return error <= accuracy;
 }
 
 // The forces that an implicit run may evaluate if it is to take a part of the work of Verlet's

@@ -54,7 +54,8 @@ struct Rules {
   double unnoticed = 0.02, part_of_answer = 0.25;
   // Explicit forces that take as long as an implicit step.
   double implicit_step = 20;
-  // Displacements of no more roundings of the positions than this are no motion.
+  // Displacements of no more roundings of the positions than this are no motion, and closed forms
+  // are as accurate as that.
   double rest = 30;
 };
 

@@ -8,17 +8,11 @@
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/motion/timing.hpp"
-#include "qddot/measure/reference/reference_rounding.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
-namespace {
-
-// The largest relative rounding error of a number.
-constexpr double one_rounding = machine_epsilon / 2;
-
-}  // namespace
+namespace {}  // namespace
 
 Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
              const Rules& rules)
@@ -77,7 +71,21 @@ Trial Stage::run(const Method& method, double value, const Limits& limits) const
 
 Trial Stage::run_pushed(const Method& method, double value, const Limits& limits,
                         const Push& push) const {
-  const State start = displaced_start(model_, scales_, push.roundings * one_rounding, push.seed);
+  State start = model_.initial();
+  std::mt19937 random(push.seed);
+  const auto shift = [&](double& number, double size) {
+    number += (random() % 2 ? size : -size) * push.roundings * machine_epsilon;
+  };
+  Index at = 0;
+  std::size_t part = 0;
+  for (const Index n : model_.unknowns_by_part()) {
+    const PartScale& own = scales_.parts[part++];
+    for (Index i = at; i < at + n; ++i) {
+      shift(start.q[i], std::max(own.extent, own.displacement));
+      shift(start.v[i], own.speed);
+    }
+    at += n;
+  }
   Trial trial = run_from(model_, start, method, value, limits);
   trial.is_pushed = true;
   return trial;
@@ -131,7 +139,7 @@ double Stage::rounding() const {
   double largest = machine_epsilon;
   for (const PartScale& part : scales_.parts) {
     const double scale = scales_.displacement_of(part);
-    if (scale > 0) largest = std::max(largest, one_rounding * part.extent / scale);
+    if (scale > 0) largest = std::max(largest, machine_epsilon / 2 * part.extent / scale);
   }
   return largest;
 }
@@ -172,21 +180,32 @@ bool Stage::is_reduced_by_symmetry() const {
          });
 }
 
-std::vector<double> Stage::distances_out_of_symmetry(const Trial& trial, const Method& method,
-                                                     double value, const Limits& limits) const {
-  const ReducedScene drawn(*drawn_,
-                           Reductions().without(Reduction::dimension).without(Reduction::mirror));
-  Scales scales;
-  extend(scales, drawn, drawn.initial());
-  // A node that starts at the origin has no coordinate to round; its displacement is rounded
-  // instead.
-  for (PartScale& part : scales.parts) {
-    if (part.extent == 0) part.displacement = scales_.displacement;
-  }
+std::vector<double> Stage::distances_as_drawn(const Trial& trial, const Method& method,
+                                              double value, const Limits& limits,
+                                              const Push& push) const {
   std::vector<double> all;
+  if (!has_springs()) return all;
+  Scene scene = *drawn_;
+  double extent = 0, speed = 0;
+  for (const PartScale& part : scales_.parts) {
+    extent = std::max({extent, part.extent, part.displacement});
+    speed = std::max(speed, part.speed);
+  }
+  std::mt19937 random(push.seed);
+  const auto shift = [&](double& number, double size) {
+    number += (random() % 2 ? size : -size) * push.roundings * machine_epsilon;
+  };
+  for (Node& node : scene.nodes) {
+    for (int c = 0; c < scene.dimension; ++c) {
+      shift(node.position[c], extent);
+      if (!node.pinned) shift(node.velocity[c], speed);
+    }
+  }
+  for (Spring& spring : scene.springs) shift(spring.law.rest_length, spring.law.rest_length);
+  const ReducedScene drawn(scene,
+                           Reductions().without(Reduction::dimension).without(Reduction::mirror));
   if (!applies_to(method, drawn.system())) return all;
-  const State start = displaced_start(drawn, scales, one_rounding, 1);
-  const Trial pushed = run_from(drawn, start, method, value, limits);
+  const Trial pushed = run_from(drawn, drawn.initial(), method, value, limits);
   if (!pushed.reached_end()) return all;
   for (std::size_t i = 0; i < times_.size(); ++i) {
     all.push_back(

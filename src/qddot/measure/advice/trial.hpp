@@ -38,7 +38,7 @@ struct Trial {
 struct Push {
   // Different seeds push in different directions.
   std::uint32_t seed = 1;
-  // The largest change of a number, in its roundings.
+  // The change of each number, in roundings of the largest one, up or down.
   double roundings = 1;
 };
 
@@ -85,10 +85,11 @@ class Stage {
   bool has_springs() const { return drawn_ && !drawn_->springs.empty(); }
   // Whether a dimension or a mirror was reduced of the scene that was drawn.
   bool is_reduced_by_symmetry() const;
-  // Runs the method with all drawn nodes in all drawn dimensions, from a start that is one rounding
-  // away, and gives the distances from the trial. Empty if the run fails.
-  std::vector<double> distances_out_of_symmetry(const Trial& trial, const Method& method,
-                                                double value, const Limits& limits) const;
+  // Runs the method on the scene as it was drawn, with each of its numbers (positions, velocities,
+  // rest lengths) pushed, all nodes in all dimensions, and gives the distances from the trial.
+  // Empty if the run fails or there is no scene of springs.
+  std::vector<double> distances_as_drawn(const Trial& trial, const Method& method, double value,
+                                         const Limits& limits, const Push& push = {}) const;
 
   // The largest relative error of the energy on the way, if the energy is asked for.
   double energy_error(const Trial& trial) const;
