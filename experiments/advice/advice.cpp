@@ -5,8 +5,8 @@
 //   advice --out results/advice
 //   advice --cases 40 --first 4000000 --out results/other
 //
-//   advice --hard --first 20000000 --out results/hard
-//   advice --hard --cases 1 --first 20000007 --scenes --out results/one
+//   advice --hard --first 21000000 --out results/hard
+//   advice --hard --cases 1 --first 21000007 --scenes --out results/one
 //
 //  1. Cases are drawn by their number (see drawn_case.hpp). The search was tuned on numbers below
 //     11000000; the study takes others.
@@ -19,7 +19,10 @@
 // The option --hard asks for hard motions instead (see hard_case.hpp), and judges positions, path
 // and energy against their true motion (see true_motion.hpp), advised runs as well. hard.csv has
 // the answers, hard_worth.csv says for each kind how often they hold and how often one is refused
-// that rounding allows. Rules may be chosen on numbers below 20000000.
+// that rounding allows. Rules may be chosen on numbers below 21000000.
+//
+// The options --hard --rules ask each hard motion again with each rule of the search halved and
+// doubled (see rules.hpp). rules.csv says what becomes of the bars, the refusals and the forces.
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,6 +34,7 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
 #include "experiments/kit/whole_file.hpp"
+#include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
 
 int main(int argc, char** argv) {
@@ -151,6 +155,7 @@ int main(int argc, char** argv) {
         });
   };
   return p.run(argc, argv, [&] {
-    return hard && rules ? judge_rules() : hard ? judge_hard_cases() : judge_cases();
+    if (rules && !hard) throw InvalidInput("--rules is given without --hard, which it belongs to");
+    return rules ? judge_rules() : hard ? judge_hard_cases() : judge_cases();
   });
 }

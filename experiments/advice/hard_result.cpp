@@ -52,7 +52,7 @@ HardResult result_of(const HardCase& hard) {
   result.truth_seconds = seconds_since(begin);
   result.left_out = truth.unknown_because;
   if (!truth.is_known()) return result;
-  result.fine_error = motion.error_of(*find_method("dprkn12"), 1e-13);
+  result.fine_error = motion.fine_error();
   result.conditioning = motion.conditioning();
   if (answer.method && answer.summary.outcome == Outcome::reached_end) {
     result.error = hard.of == AccuracyOf::positions

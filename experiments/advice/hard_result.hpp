@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiments/advice/hard_case.hpp"
+#include "experiments/advice/judged_motion.hpp"
 #include "experiments/kit/csv.hpp"
 
 namespace qddot::judged_advice {
@@ -30,7 +30,7 @@ struct HardResult {
 
   bool has_truth() const { return left_out.empty(); }
   // Whether rounding leaves the accuracy possible.
-  bool is_well_posed() const { return has_truth() && conditioning <= 0.1 * accuracy; }
+  bool is_well_posed() const { return has_truth() && conditioning <= well_posed * accuracy; }
   // Whether rounding makes the accuracy impossible, three times over.
   bool is_beyond_rounding() const {
     return has_truth() && of != "energy" && conditioning > 3 * accuracy;

@@ -120,6 +120,7 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
   Seen fine;
   if (!model_.system().has_massless()) fine = run(*find_method("dprkn12"), 1e-13, model_, truth_);
   scales_ = scales_of(model_, fine, truth_, hard.scene);
+  fine_error_ = judged_advice::error_of(fine, model_, truth_, scales_, hard.of);
   switch (hard.of) {
     case AccuracyOf::positions:
       conditioning_ = truth_.conditioning_at_end / least_scale(scales_);

@@ -31,7 +31,7 @@ RuledCase ruled_case(const HardCase& hard) {
       !motion.model().system().has_stiffness())
     return result;
   result.conditioning = motion.conditioning();
-  result.is_well_posed = result.conditioning <= 0.1 * hard.accuracy;
+  result.is_well_posed = motion.is_well_posed();
   if (!result.is_well_posed) return result;
   result.answers.push_back(answer(hard, motion, {}));
   for (const auto& [name, rule] : all_rules) {

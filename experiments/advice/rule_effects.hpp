@@ -9,7 +9,7 @@
 
 namespace qddot::judged_advice {
 
-// What a search finds for a hard case by changed rules.
+// The answer of a search with changed rules to a hard case.
 struct RuledAnswer {
   bool is_claimed = false;
   double error_estimate = 0, error = 0;

@@ -49,6 +49,18 @@ BOOST_AUTO_TEST_CASE(a_horizon_after_the_end_is_extrapolated) {
   BOOST_TEST(found.lyapunov == 20, boost::test_tools::tolerance(1e-10));
 }
 
+BOOST_AUTO_TEST_CASE(two_looks_before_the_horizon_tell_the_rate) {
+  // The last differences that are small: 1e-13 and 1e-7, a second apart.
+  const Divergence found =
+      qddot::measure::divergence({0, 1, 2, 3, 4, 5}, {1e-16, 1e-13, 1e-7, 0.12, 0.3, 0.3});
+  BOOST_TEST(found.horizon == 3.0);
+  BOOST_TEST(found.lyapunov == std::log(1e6), boost::test_tools::tolerance(1e-10));
+  // And one that is small.
+  const Divergence sudden = qddot::measure::divergence({0, 1, 2}, {1e-16, 0.3, 0.3});
+  BOOST_TEST(sudden.horizon == 1.0);
+  BOOST_TEST(sudden.lyapunov == std::log(3e15), boost::test_tools::tolerance(1e-10));
+}
+
 BOOST_AUTO_TEST_CASE(an_oscillation_on_it_does_not_matter) {
   // The largest so far follows the crests; there are some in the second half.
   const auto difference = [](double t) {

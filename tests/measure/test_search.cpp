@@ -154,4 +154,48 @@ BOOST_AUTO_TEST_CASE(a_motion_of_few_roundings_is_known_to_few_digits) {
   BOOST_TEST((Search(model, 2, AccuracyOf::positions, seconds, &scene).find(1e-5) != nullptr));
 }
 
+// A mass that stands on a spring in balance falls over as rounding lets it: by e in sqrt(l / g).
+BOOST_AUTO_TEST_CASE(what_stands_in_balance_is_known_until_rounding_has_grown) {
+  Scene scene{.name = "standing", .dimension = 2, .gravity = {0, -9.81, 0}};
+  scene.nodes = {{.pinned = true}, {.position = {0, 1, 0}, .mass = 0.2}};
+  scene.springs = {{{0, 1}, {.stiffness = 4000, .rest_length = 1 + 0.2 * 9.81 / 4000}}};
+  const ReducedScene model(scene);
+  const auto bound = [&](double until) {
+    Search search(model, until, AccuracyOf::positions, seconds, &scene);
+    const Trial* found = search.find(1e-6);
+    return found ? search.check().bound(*found)->error : INFINITY;
+  };
+  // A rounding of the height to the side, and one of the rest length beside w^2 = k/m: the bound is
+  // no less than half of the first, and no more than some hundred of both.
+  const double grown = 1.1e-16 * std::cosh(std::sqrt(9.81) * 3);
+  BOOST_TEST(bound(3) > grown / 2);
+  BOOST_TEST(bound(3) < 1000 * grown);
+  BOOST_TEST(bound(12) == INFINITY);
+}
+
+// The bound of a motion of 1e-7 in closed form knows that positions are of the order of 1.
+BOOST_AUTO_TEST_CASE(closed_forms_are_as_accurate_as_their_coordinates) {
+  constexpr double until = 1431.658729802337, k = 5.302289364884351, m = 1.9865957055368455;
+  constexpr double pin = -0.590300432355326, start = -1.2367572492546013;
+  constexpr double v = -1.907452168458753e-07, rest = 0.6464568168992753;
+  Scene scene{.name = "small", .dimension = 1};
+  scene.nodes = {{.position = {pin, 0, 0}, .pinned = true},
+                 {.position = {start, 0, 0}, .velocity = {v, 0, 0}, .mass = m}};
+  scene.springs = {{{0, 1}, {.stiffness = k, .rest_length = rest}}};
+  const ReducedScene model(scene);
+  Search search(model, until, AccuracyOf::positions, seconds, &scene);
+  const Trial* found = search.find(1e-6);
+  BOOST_TEST_REQUIRE((found && found->method->order == 0));
+  const long double w = std::sqrt(static_cast<long double>(k) / m);
+  const long double balance = static_cast<long double>(pin) - rest;
+  const long double x =
+      balance + (start - balance) * std::cos(w * until) + v / w * std::sin(w * until);
+  const double moved = search.runs().stage().scales().displacement;
+  const double error =
+      std::abs(static_cast<double>(model.expand(found->path.back())[1].position.x() - x)) / moved;
+  const double bound = search.check().bound(*found)->error;
+  BOOST_TEST(error <= bound);
+  BOOST_TEST(bound > 1.1e-16 / moved);  // one rounding of the position
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -167,6 +167,22 @@ BOOST_AUTO_TEST_CASE(below_rounding_nothing_is_claimed) {
   BOOST_TEST(contains(answer.why, {"the smallest known error bound is"}));
 }
 
+// Two masses at the rest length of their spring drift by 1e-9 of their coordinates: nothing is to
+// be integrated, and one rounding of a coordinate is 2e-7 of the drift.
+BOOST_AUTO_TEST_CASE(a_small_drift_is_known_to_the_rounding_of_its_coordinates) {
+  Scene scene{.name = "drift", .dimension = 2};
+  scene.nodes = {{.position = {1, 0, 0}, .velocity = {1e-9, 0, 0}, .mass = 1},
+                 {.position = {2, 0, 0}, .velocity = {1e-9, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 10, .rest_length = 1}}};
+  BOOST_TEST_REQUIRE(ReducedScene(scene).system().size() == 0);
+  const Answer answer = measure::solve(scene, 1, 1e-3);
+  BOOST_TEST(answer.is_reached);
+  BOOST_TEST(answer.error_estimate > 2e-7);
+  BOOST_TEST(answer.error_estimate < 1e-5);
+  BOOST_TEST(contains(measure::solve(scene, 1, 1e-9).why, {"one rounding of the start"}));
+  BOOST_TEST(!advise(scene, 1, {1e-9}).for_each.front().take.has_value());
+}
+
 BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
   const ReducedScene model(drawn("cloth", {{"nodes", 10}}));
   const double until = 0.3, accuracy = 1e-4;

@@ -2,6 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "experiments/advice/rule_effects.hpp"
 #include "experiments/advice/worth.hpp"
 
 BOOST_AUTO_TEST_SUITE(worth)
@@ -40,6 +41,30 @@ BOOST_AUTO_TEST_CASE(figures_are_those_of_the_cases_they_are_of) {
   BOOST_TEST(std::abs(value("run_over_best_90") - 9) < rounding);
   BOOST_TEST(std::abs(value("total_over_best_median") - 0.1 / 0.03) < rounding);
   BOOST_TEST(std::abs(value("bar_over_error_median") - 4.5) < rounding);
+}
+
+BOOST_AUTO_TEST_CASE(a_changed_rule_is_compared_with_the_rules_as_they_are) {
+  using judged_advice::RuledAnswer;
+  using judged_advice::RuledCase;
+  const RuledAnswer usual{.is_claimed = true, .error_estimate = 1e-3, .error = 1e-4, .forces = 100};
+  std::vector<RuledCase> cases(
+      4, {.is_well_posed = true,
+          .answers = std::vector<RuledAnswer>(1 + 2 * all_rules.size(), usual)});
+  cases[3].is_well_posed = false;
+  // The first rule, halved: a bar that does not hold, a refusal, and half of the forces.
+  cases[0].answers[1].error = 2e-3;
+  cases[1].answers[1].is_claimed = false;
+  cases[2].answers[1].forces = 0;
+  const auto effects = judged_advice::effects_of(cases);
+  BOOST_TEST_REQUIRE(effects.size() == 1 + 2 * all_rules.size());
+  BOOST_TEST(effects[0].within_bar == 100.0);
+  BOOST_TEST(effects[0].refused == 0.0);
+  BOOST_TEST(effects[1].rule == all_rules[0].first);
+  BOOST_TEST(effects[1].factor == 0.5);
+  BOOST_TEST(effects[1].within_bar == 50.0);
+  BOOST_TEST(std::abs(effects[1].refused - 100.0 / 3) < 1e-12);  // rounding of a quotient
+  BOOST_TEST(effects[1].forces == 0.5);
+  BOOST_TEST(effects[2].forces == 1.0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -16,8 +16,7 @@ from packed_folder import pack
 
 # Waits are for conditions; this is only how long a test may hang on a busy machine.
 PATIENCE = 120
-# WebGL alone is drawn by SwiftShader: to draw whole pages by it takes twice the time.
-SOFTWARE_GL = ("--disable-gpu", "--enable-unsafe-swiftshader")
+SOFTWARE_GL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 QUIET = (
     "--headless=new --no-sandbox --disable-gpu-sandbox --disable-dev-shm-usage"
     " --disable-background-networking --disable-component-update --disable-default-apps"

@@ -39,7 +39,7 @@ void Check::condition(const Trial& judge, double accuracy) {
   if (!repeat(1)) return;
   // One pair of runs may be near each other by luck. So its distance counts twice as often as the
   // largest of three.
-  found.share = rules.doubt * rules.doubt * found.effect;
+  found.share = rules.doubt_of_two() * found.effect;
   if (found.share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
     if (!repeat(2) || !repeat(3)) return;
     found.share = rules.doubt * found.effect;
@@ -48,8 +48,8 @@ void Check::condition(const Trial& judge, double accuracy) {
   if (!condition_symmetry(judge, accuracy)) conditioning_.reset();
 }
 
-// What rests does not feel one rounding, though it adds up. It is pushed by many, as it was drawn,
-// and the effect is in proportion.
+// A motion at rest does not feel one rounding, though roundings add up. The repetition is pushed by
+// many, as it was drawn, and the effect is in proportion. The run's own forces round as well.
 void Check::condition_rest(const Trial& judge) {
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
@@ -67,7 +67,7 @@ void Check::condition_rest(const Trial& judge) {
   for (double& difference : differences) difference /= roundings;
   const double effect = std::max(machine_epsilon, std::ranges::max(differences));
   conditioning_ = Conditioning{.effect = effect,
-                               .share = rules.doubt * rules.doubt * rules.doubt * effect,
+                               .share = rules.doubt_of_two() * rules.doubt * effect,
                                .differences = std::move(differences)};
 }
 
@@ -78,9 +78,9 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
   const Rules& rules = runs_.rules();
   // The drawn motion may need a finer tolerance than the reduced one: it passes beside what that
   // one passes through. A smaller distance then was not that of rounding.
-  const std::int64_t most_forces = std::max(runs_.forces_within(rules.much_work),
-                                            static_cast<std::int64_t>(rules.doubt * rules.doubt) *
-                                                judge.summary.counts.force_evaluations);
+  const std::int64_t most_forces = std::max(
+      runs_.forces_within(rules.much_work),
+      static_cast<std::int64_t>(rules.doubt_of_two()) * judge.summary.counts.force_evaluations);
   bool is_run = false;
   double value = judge.value;
   for (int i = 0; i < 3; ++i, value *= rules.small) {
@@ -99,7 +99,7 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
       break;
   }
   conditioning_->share =
-      std::max(conditioning_->share, rules.doubt * rules.doubt * conditioning_->leaves_by);
+      std::max(conditioning_->share, rules.doubt_of_two() * conditioning_->leaves_by);
   return is_run;
 }
 
@@ -112,19 +112,20 @@ double Check::between_steps(const Trial& trial) const {
   const Rules& rules = runs_.rules();
   // Looks end steps of the other methods, so that a run with fewer looks has longer steps.
   if (!trial.method->is(Trait::interpolates)) return rules.doubt / rules.small * trial.value;
-  return rules.doubt * rules.doubt * rules.small * trial.value;
+  return rules.doubt_of_two() * rules.small * trial.value;
 }
 
 std::optional<Bound> Check::bound(const Trial& trial) const {
   if (!trial.reached_end() || judges_.empty()) return {};
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
-  const double twice = rules.doubt * rules.doubt;
-  const double rounding = twice * machine_epsilon + (conditioning_ ? conditioning_->share : 0);
+  const double rounding =
+      rules.doubt_of_two() * machine_epsilon + (conditioning_ ? conditioning_->share : 0);
   if (stage.of() == AccuracyOf::energy) {
     // The largest error between the looks and steps may be larger than at them.
     const bool interpolates = trial.method->is(Trait::interpolates);
-    const double seen = (interpolates ? twice : rules.doubt) * stage.energy_error(trial);
+    const double seen =
+        (interpolates ? rules.doubt_of_two() : rules.doubt) * stage.energy_error(trial);
     const double between = interpolates ? std::max(seen, between_steps(trial)) : seen;
     return Bound{between + rounding};
   }

@@ -33,7 +33,7 @@ Forecast::Forecast(const Runs& runs, const std::vector<State>& path, double w_mo
 
 double Forecast::doubt(const Method& one, const Method& other) const {
   if (&one == &other) return 1;
-  return has_seen(one) && has_seen(other) ? rules_.doubt : rules_.doubt * rules_.doubt;
+  return has_seen(one) && has_seen(other) ? rules_.doubt : rules_.doubt_of_two();
 }
 
 double Forecast::by_frequency(const Method& method, double value) const {

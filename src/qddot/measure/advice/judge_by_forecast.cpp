@@ -107,7 +107,7 @@ bool Search::judge_by_forecast(double accuracy) {
   const Trial* tried = first;
   for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
        ++round) {
-    const double unseen = round == 0 ? 1 : rules_.doubt * rules_.doubt;
+    const double unseen = round == 0 ? 1 : rules_.doubt_of_two();
     double error = forecast_->error(*tried->method, tried->value);
     if (!(error <= aim)) {
       const auto next = explicit_candidate(aim, nullptr, unseen);
@@ -130,7 +130,7 @@ bool Search::judge_by_forecast(double accuracy) {
     const double kinetic = runs_.stage().scales().kinetic;
     const double gained = kinetic > 0 ? checked.energy_gain / kinetic : 0;
     check_.accept(*tried, {rules_.doubt * between / (1 - share), &checked});
-    // Where errors do not fall by their order, the check's is still the smaller one by a half.
+    // Errors may not fall by their order. The check's is then still at most half of the other one.
     check_.accept(checked, {std::max(between, rules_.small * gained), tried, true});
     forecast_->learn(check_);
     forecast_->learn(*tried, between / (1 - share));
@@ -141,11 +141,12 @@ bool Search::judge_by_forecast(double accuracy) {
       known = &runs_.make(*checked.method, checked.value);
     if (check_.is_known(*known, accuracy)) {
       // The first run tells cheaply what rounding does; one that resolves the motion, if need be.
-      for (const Trial* repeated : {first, tried}) {
-        check_.condition(*repeated, accuracy);
-        if (check_.conditioning() && check_.is_known(*known, accuracy)) return true;
-      }
-      return false;
+      const auto is_known_beside_rounding = [&](const Trial& repeated) {
+        check_.condition(repeated, accuracy);
+        return check_.conditioning() && check_.is_known(*known, accuracy);
+      };
+      return is_known_beside_rounding(*first) ||
+             (tried != first && is_known_beside_rounding(*tried));
     }
     // Runs that should be near each other and are not: rounding may be the reason. The first run
     // tells cheaply whether it leaves nothing known.

@@ -14,7 +14,7 @@ namespace qddot::inline measure {
 // together, the finest is within the distance of the finer two.
 bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left) {
   // Errors of implicit methods follow their tolerances less closely.
-  const double doubt = method.is(Trait::implicit) ? rules_.doubt * rules_.doubt : rules_.doubt;
+  const double doubt = method.is(Trait::implicit) ? rules_.doubt_of_two() : rules_.doubt;
   const Stage& stage = runs_.stage();
   std::vector<const Trial*> runs;
   for (double rtol = std::min(accuracy, rules_.largest_tolerance); rtol >= least_accuracy;
@@ -22,8 +22,9 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
     if (runs_.seconds_left() <= 0 || forces_left <= 0) break;
     // Three runs and the repetition of the finest take about six times as long as the first.
     const bool is_first = runs.empty();
-    const Trial& trial =
-        runs_.make(method, rtol, {.forces = is_first ? forces_left / 6 : forces_left});
+    const std::int64_t most_forces =
+        is_first ? std::max<std::int64_t>(1, forces_left / 6) : forces_left;
+    const Trial& trial = runs_.make(method, rtol, {.forces = most_forces});
     forces_left -= trial.summary.counts.force_evaluations;
     if (!trial.path.empty()) runs_.measure_by(trial);
     if (!trial.reached_end()) {
@@ -116,7 +117,7 @@ bool Search::judge_in_closed_form(double accuracy) {
                phase = w * until_ * (slow > 0 ? std::max(1.0, w / slow) : 1);
   // Positions are sums of many numbers as large as coordinates.
   const double error = stage.rests() ? 0
-                                     : rules_.doubt * rules_.doubt * machine_epsilon * (1 + phase) +
+                                     : rules_.doubt_of_two() * machine_epsilon * (1 + phase) +
                                            rules_.rest * stage.rounding();
   check_.accept(trial, {error});
   if (stage.of() == AccuracyOf::energy) {

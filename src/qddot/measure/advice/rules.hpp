@@ -6,12 +6,12 @@
 
 namespace qddot::inline measure {
 
-// The numbers by which a search decides. The study `advice --rules` asks the training cases again
-// with each of them halved and doubled: docs/data/advice_rules has what becomes of the bars, the
-// refusals and the work. Errors are relative to the motion.
+// The numbers by which a search decides. The study `advice --hard --rules` asks hard motions again
+// with each of them halved and doubled. Its rules.csv says what becomes of the bars, the refusals
+// and the work. Errors are relative to the motion.
 struct Rules {
-  // Estimates of errors count this many times; twice the factor where two estimates follow each
-  // other.
+  // An estimate of an error counts this many times; one that follows from another estimate counts
+  // doubt_of_two() times.
   double doubt = 2;
   // A small part: what is beside it counts alone.
   double small = 0.1;
@@ -57,6 +57,8 @@ struct Rules {
   // Displacements of no more roundings of the positions than this are no motion, and closed forms
   // are as accurate as that.
   double rest = 30;
+
+  double doubt_of_two() const { return doubt * doubt; }
 };
 
 // Each rule with its name.

@@ -62,14 +62,15 @@ Answer of_nothing(const ReducedScene& model, double until, const Wanted& wanted)
   answer.summary.t_reached = until;
   answer.summary.message.clear();
   answer.nodes = model.expand(answer.end);
-  Scales scales;
-  for (const double t : {0.0, until / 2, until})
-    extend(scales, model, {t, model.initial().q, model.initial().v});
-  double roundings = 1;
-  for (const PartScale& part : scales.parts) {
-    if (part.displacement > 0 && wanted.of != AccuracyOf::energy)
-      roundings = std::max(roundings, part.extent / part.displacement);
+  const std::vector<Node> start = model.expand(model.initial());
+  double extent = 0, displacement = 0;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    if (start[i].pinned) continue;
+    extent = std::max(extent, start[i].position.lpNorm<Eigen::Infinity>());
+    displacement = std::max(displacement, (answer.nodes[i].position - start[i].position).norm());
   }
+  const bool counts = displacement > 0 && wanted.of != AccuracyOf::energy;
+  const double roundings = counts ? std::max(1.0, extent / displacement) : 1;
   answer.error_estimate = 4 * machine_epsilon * roundings;
   answer.error_estimate_kind = EstimateKind::rounding;
   answer.is_reached = answer.error_estimate <= wanted.accuracy;

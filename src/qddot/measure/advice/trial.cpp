@@ -12,7 +12,22 @@
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
-namespace {}  // namespace
+namespace {
+
+// Moves numbers by some roundings of a size, each up or down at random.
+class Shift {
+ public:
+  explicit Shift(const Push& push) : by_(push.roundings * machine_epsilon), random_(push.seed) {}
+  void operator()(double& number, double size) {
+    number += random_() % 2 ? by_ * size : -by_ * size;
+  }
+
+ private:
+  double by_;
+  std::mt19937 random_;
+};
+
+}  // namespace
 
 Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
              const Rules& rules)
@@ -26,7 +41,7 @@ Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene
                                                                        : rules.looks_at_a_path))) {}
 
 Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
-                      double value, const Limits& limits) const {
+                      double value, const Limits& limits, const See& see_step) const {
   Trial trial{.method = &method, .value = value};
   Options options = options_for(method, value, model);
   options.most_forces = limits.forces;
@@ -39,8 +54,8 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
     trial.energy_gain = std::max(trial.energy_gain, gain);
     trial.energy_gap = std::max(trial.energy_gap, std::abs(gain));
   };
-  Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }};
-  if (of_ == AccuracyOf::energy) each.step = see_energy;
+  Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }, see_step};
+  if (!each.step && of_ == AccuracyOf::energy) each.step = see_energy;
   trial.seconds = seconds_of(
       [&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
   for (const State& seen : trial.path) see_energy(seen);
@@ -49,14 +64,9 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
 }
 
 void Stage::look_within_steps(const Method& method, double value, const Limits& limits) {
-  Options options = options_for(method, value, model_);
-  options.most_forces = limits.forces;
-  const auto integrator = make_integrator(method, model_.system(), options);
   std::vector<double> steps{0};
-  Observer each{{}, [](const State&) {}, [&](const State& seen) { steps.push_back(seen.t); }};
-  State state = model_.initial();
-  const Deadline deadline(limits.seconds);
-  integrator->advance(state, until_, each, deadline.token());
+  run_from(model_, model_.initial(), method, value, limits,
+           [&](const State& seen) { steps.push_back(seen.t); });
   std::mt19937 random(1);
   std::uniform_real_distribution<double> part(0, 1);
   const std::size_t every = 1 + steps.size() / static_cast<std::size_t>(rules_.looks_at_a_path);
@@ -72,10 +82,7 @@ Trial Stage::run(const Method& method, double value, const Limits& limits) const
 Trial Stage::run_pushed(const Method& method, double value, const Limits& limits,
                         const Push& push) const {
   State start = model_.initial();
-  std::mt19937 random(push.seed);
-  const auto shift = [&](double& number, double size) {
-    number += (random() % 2 ? size : -size) * push.roundings * machine_epsilon;
-  };
+  Shift shift(push);
   Index at = 0;
   std::size_t part = 0;
   for (const Index n : model_.unknowns_by_part()) {
@@ -150,11 +157,10 @@ double Stage::energy_error(const Trial& trial) const { return trial.energy_gap /
 
 double Stage::energy_rounding(const Trial& trial) const {
   double largest = 0;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> share(-machine_epsilon, machine_epsilon);
+  Shift shift({});
   for (State seen : trial.path) {
     const double energy = model_.energy(seen);
-    for (double& q : seen.q) q *= 1 + share(random);
+    for (double& q : seen.q) shift(q, std::abs(q));
     largest = std::max(largest, std::abs(model_.energy(seen) - energy));
   }
   return largest / energy_scale();
@@ -191,10 +197,7 @@ std::vector<double> Stage::distances_as_drawn(const Trial& trial, const Method& 
     extent = std::max({extent, part.extent, part.displacement});
     speed = std::max(speed, part.speed);
   }
-  std::mt19937 random(push.seed);
-  const auto shift = [&](double& number, double size) {
-    number += (random() % 2 ? size : -size) * push.roundings * machine_epsilon;
-  };
+  Shift shift(push);
   for (Node& node : scene.nodes) {
     for (int c = 0; c < scene.dimension; ++c) {
       shift(node.position[c], extent);

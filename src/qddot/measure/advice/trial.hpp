@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -109,8 +110,10 @@ class Stage {
   void reach_to_pins();
   // The largest kinetic energy, or 1 J if nothing moves.
   double energy_scale() const;
+  using See = std::function<void(const State&)>;
+  // `see_step`, if set, takes the place of a look at the energy after each step.
   Trial run_from(const ReducedScene& model, const State& start, const Method& method, double value,
-                 const Limits& limits) const;
+                 const Limits& limits, const See& see_step = {}) const;
 
   const ReducedScene& model_;
   double until_;

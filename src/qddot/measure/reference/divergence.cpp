@@ -24,8 +24,10 @@ Divergence divergence(const std::vector<double>& times, const std::vector<double
   const std::size_t free = first_above(apart / 10), near = first_above(apart);
   const double middle = (times.front() + times[free - 1]) / 2;
   std::vector<double> t, logarithm;
-  for (std::size_t i = 0; i < free; ++i) {
-    if (times[i] < middle) continue;
+  // Two points at least, however few looks there are before the horizon.
+  const std::size_t end = std::max<std::size_t>(free, 2);
+  for (std::size_t i = 0; i < end; ++i) {
+    if (times[i] < middle && i + 2 < end) continue;
     t.push_back(times[i]);
     logarithm.push_back(std::log(largest[i]));
   }

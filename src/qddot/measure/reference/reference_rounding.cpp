@@ -27,12 +27,11 @@ Vec by_unknown(const ReducedScene& scene, const Scales& scales, const Of& of) {
 
 }  // namespace
 
-State displaced_start(const ReducedScene& scene, const Scales& scales, double part,
-                      std::uint32_t seed) {
+State displaced_start(const ReducedScene& scene, const Scales& scales, double part) {
   State start = scene.initial();
   const Vec lengths = by_unknown(scene, scales, reach);
   const Vec speeds = by_unknown(scene, scales, [](const PartScale& own) { return own.speed; });
-  std::mt19937 random(seed);
+  std::mt19937 random(1);
   std::uniform_real_distribution<double> share(-part, part);
   for (Index i = 0; i < start.q.size(); ++i) start.q[i] += lengths[i] * share(random);
   for (Index i = 0; i < start.v.size(); ++i) start.v[i] += speeds[i] * share(random);

@@ -6,10 +6,8 @@ namespace qddot::inline measure {
 
 // The start with each unknown changed at random. Positions change by up to `part` times the largest
 // coordinate or displacement of their part of the scene; velocities change by up to `part` times
-// its speed. The machine's epsilon as `part` makes that one rounding. Other seeds give other
-// starts.
-State displaced_start(const ReducedScene& scene, const Scales& scales, double part,
-                      std::uint32_t seed = 1);
+// its speed. The machine's epsilon as `part` makes that one rounding.
+State displaced_start(const ReducedScene& scene, const Scales& scales, double part);
 
 // Repeats a composition from a start that is one rounding away, to an end time one rounding later.
 // Measures the effect on the end.
