@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/advise.hpp"
@@ -101,7 +102,6 @@ double error_of_run(const Method& method, double value, const ReducedScene& mode
 
 void measure_worth(CaseResult& result, const ReducedScene& model, const Reference& reference,
                    const Answer& answer, int repeats) {
-  result.certified = reference.certified.position;
   result.error =
       errors_between(model, answer.end, reference.end, reference.energy, reference.scales).position;
   const Hindsight found = hindsight(model, result.until, result.accuracy, reference, repeats);
@@ -129,6 +129,22 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
     result.left_out = "nothing is left to be integrated";
     return result;
   }
+  std::optional<Reference> reference;
+  try {
+    reference = make_reference(model, drawn.until, reference_seconds, &drawn.scene);
+  } catch (const NoReference& error) {
+    result.left_out = error.what();
+    return result;
+  }
+  result.certified = reference->certified.position;
+  if (reference->is_only_symmetric()) {
+    result.left_out = "the drawn motion leaves its symmetry";
+    return result;
+  }
+  if (result.certified > good_reference * drawn.accuracy) {
+    result.left_out = "the reference is not certified to three tenths of the accuracy";
+    return result;
+  }
   const Answer answer = solve(model, drawn.until, {.accuracy = drawn.accuracy}, &drawn.scene);
   result.is_claimed = answer.is_reached;
   result.method = answer.method ? answer.method->name : "";
@@ -146,23 +162,9 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
     result.advised_value = take->value;
     result.advised_error = take->error;
     result.advised_seconds = take->seconds;
+    result.advised_true_error = error_of_run(*take->method, take->value, model, *reference);
   }
-  try {
-    const Reference reference = make_reference(model, drawn.until, reference_seconds, &drawn.scene);
-    if (reference.is_only_symmetric()) {
-      result.left_out = "the drawn motion leaves its symmetry";
-    } else if (reference.certified.position > good_reference * drawn.accuracy) {
-      result.left_out = "the reference is not certified to three tenths of the accuracy";
-      result.certified = reference.certified.position;
-    } else {
-      if (!result.advised.empty())
-        result.advised_true_error =
-            error_of_run(*find_method(result.advised), result.advised_value, model, reference);
-      if (answer.method) measure_worth(result, model, reference, answer, repeats);
-    }
-  } catch (const NoReference& error) {
-    result.left_out = error.what();
-  }
+  if (answer.method) measure_worth(result, model, *reference, answer, repeats);
   return result;
 }
 

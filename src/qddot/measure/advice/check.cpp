@@ -28,7 +28,15 @@ void Check::condition(const Trial& judge, double accuracy) {
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
   if (stage.rests()) return condition_rest(judge);
-  Conditioning found;
+  if (!condition_symmetry(judge, accuracy)) return;
+  Conditioning found = conditioning_.value_or(Conditioning{});
+  if (conditioning_ && found.share <= rules.part_of_judge * accuracy) {
+    // The scene was repeated as it was drawn, with all its nodes pushed.
+    conditioning_->effect = found.leaves_by;
+    conditioning_->differences = found.differences_left;
+    return;
+  }
+  conditioning_.reset();
   const auto repeat = [&](std::uint32_t seed) {
     const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.seed = seed});
     if (!twin.reached_end()) return false;
@@ -41,13 +49,21 @@ void Check::condition(const Trial& judge, double accuracy) {
   if (!repeat(1)) return;
   // One pair of runs may be near each other by luck. So its distance counts twice as often as the
   // largest of three.
-  found.share = rules.doubt_of_two() * found.effect;
-  if (found.share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
+  double share = rules.doubt_of_two() * found.effect;
+  if (share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
     if (!repeat(2) || !repeat(3)) return;
-    found.share = rules.doubt * found.effect;
+    share = rules.doubt * found.effect;
   }
+  found.share = std::max(found.share, share);
   conditioning_ = found;
-  if (!condition_symmetry(judge, accuracy)) conditioning_.reset();
+}
+
+void Check::condition_by_pair(const Trial& first, double between, double accuracy) {
+  const Rules& rules = runs_.rules();
+  const double share = rules.doubt_of_two() * between;
+  if (share > rules.part_of_judge * accuracy) return condition(first, accuracy);
+  conditioning_ = Conditioning{.effect = between, .share = share};
+  condition_symmetry(first, accuracy);
 }
 
 // A motion at rest does not feel one rounding, though roundings add up. The repetition is pushed by
@@ -80,9 +96,9 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
   const Rules& rules = runs_.rules();
   // The drawn motion may need a finer tolerance than the reduced one: it passes beside what that
   // one passes through. A smaller distance then was not that of rounding.
-  const std::int64_t most_forces = std::max(
-      runs_.forces_within(rules.much_work),
-      static_cast<std::int64_t>(rules.doubt_of_two()) * judge.summary.counts.force_evaluations);
+  const std::int64_t most_forces =
+      std::max(runs_.forces_within(rules.much_work),
+               static_cast<std::int64_t>(rules.doubt_of_two() * runs_.forces(judge)));
   bool is_run = false;
   double value = judge.value;
   for (int i = 0; i < 3; ++i, value *= rules.small) {
@@ -102,6 +118,7 @@ bool Check::condition_symmetry(const Trial& judge, double accuracy) {
   }
   conditioning_->share =
       std::max(conditioning_->share, rules.doubt_of_two() * conditioning_->leaves_by);
+  if (!is_run) conditioning_.reset();
   return is_run;
 }
 

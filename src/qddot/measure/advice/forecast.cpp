@@ -172,8 +172,7 @@ void Forecast::learn(const Check& check) {
 void Forecast::learn(const Trial& trial, double error) {
   const Method& method = *trial.method;
   if (method.order == 0 || !(error > 0)) return;
-  seen_[&method] = {trial.value, error, trial.seconds,
-                    static_cast<double>(trial.summary.counts.force_evaluations)};
+  seen_[&method] = {trial.value, error, trial.seconds, runs_.forces(trial)};
   if (!is_forecast_by_frequency(method)) return;
   const double expected = by_frequency(method, trial.value);
   if (std::isfinite(expected) && expected > 0) {

@@ -141,18 +141,21 @@ bool Search::judge_by_forecast(double accuracy) {
       known = &runs_.make(*checked.method, checked.value);
     if (check_.is_known(*known, accuracy)) {
       // The first run tells cheaply what rounding does; one that resolves the motion, if need be.
-      const auto is_known_beside_rounding = [&](const Trial& repeated) {
-        check_.condition(repeated, accuracy);
+      const auto is_known_beside_rounding = [&] {
         return check_.conditioning() && check_.is_known(*known, accuracy);
       };
-      return is_known_beside_rounding(*first) ||
-             (tried != first && is_known_beside_rounding(*tried));
+      check_.condition_by_pair(*first, std::max(between, runs_.distance(*tried, checked)),
+                               accuracy);
+      if (!is_known_beside_rounding() && tried != first) check_.condition(*tried, accuracy);
+      return is_known_beside_rounding();
     }
     // Runs that should be near each other and are not: rounding may be the reason. The first run
     // tells cheaply whether it leaves nothing known.
     if (between > rules_.small) {
       check_.condition(*first, accuracy);
       if (!check_.is_hopeless(rules_.small)) check_.set({});
+      // Errors so much larger than the forecast show no order.
+      if (error < rules_.small * rules_.small * between) return false;
     }
     if (round > 0 && !check_.conditioning()) check_.condition(*tried, accuracy);
     if (check_.is_hopeless(accuracy)) return false;

@@ -25,7 +25,7 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
     const std::int64_t most_forces =
         is_first ? std::max<std::int64_t>(1, forces_left / 6) : forces_left;
     const Trial& trial = runs_.make(method, rtol, {.forces = most_forces});
-    forces_left -= trial.summary.counts.force_evaluations;
+    forces_left -= std::llround(runs_.forces(trial));
     if (!trial.path.empty()) runs_.measure_by(trial);
     if (!trial.reached_end()) {
       if (trial.summary.outcome == Outcome::over_budget || !is_first) break;
@@ -164,7 +164,7 @@ bool Search::judge_energy(double accuracy) {
     for (double rtol = rules_.small * rules_.largest_tolerance;
          rtol >= least_accuracy && forces_left > 0; rtol /= 10) {
       const Trial& trial = runs_.make(*method, rtol, {.forces = forces_left});
-      forces_left -= trial.summary.counts.force_evaluations;
+      forces_left -= std::llround(runs_.forces(trial));
       if (!trial.reached_end()) {
         // Long steps may find a cable slack that is taut.
         if (last || trial.summary.outcome == Outcome::over_budget) break;

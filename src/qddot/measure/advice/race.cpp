@@ -22,7 +22,7 @@ std::optional<Candidate> Search::promised(double error, double seconds) const {
 // answer, the one that evaluates the fewest forces.
 std::optional<Candidate> Search::first_of_method(const Trial& answer, double accuracy) const {
   std::optional<Candidate> cheapest;
-  double fewest = static_cast<double>(answer.summary.counts.force_evaluations);
+  double fewest = runs_.forces(answer);
   for (const Method& method : methods()) {
     const bool is_implicit = method.is(Trait::implicit);
     if (is_forecast_by_frequency(method) || method.order < 2 || !applies_to(method, system_) ||

@@ -45,7 +45,7 @@ struct Rules {
   // The check of a run with fixed steps has an error that is expected to be smaller by this factor.
   double finer = 4;
   // Rounds of choosing, running and learning.
-  double rounds = 8;
+  double rounds = 4;
   // Corrections of a forecast by errors of methods whose orders differ by this say nothing.
   double unrelated_orders = 8;
 

@@ -6,6 +6,7 @@
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot::inline measure {
 
@@ -13,6 +14,7 @@ Runs::Runs(const ReducedScene& model, double until, AccuracyOf of, double second
            const Scene* drawn, const Rules& rules)
     : limit_(seconds),
       bound_of_w_(frequency_bound(model.system(), model.initial().q)),
+      parts_(static_cast<double>(std::max<std::size_t>(1, blocks_of(model.system()).size()))),
       stage_(model, until, of, drawn, rules) {}
 
 double Runs::steps_of_verlet() const {
@@ -20,7 +22,11 @@ double Runs::steps_of_verlet() const {
 }
 
 double Runs::work_of_force() const {
-  return rules().call + static_cast<double>(stage_.model().system().size());
+  return rules().call * parts_ + static_cast<double>(stage_.model().system().size());
+}
+
+double Runs::forces(const Trial& trial) const {
+  return static_cast<double>(trial.summary.counts.force_evaluations) / parts_;
 }
 
 std::int64_t Runs::forces_within(double work) const {

@@ -40,8 +40,9 @@ class Runs {
   // Bounds of the largest frequency at the start [rad/s], and of the steps of Verlet's method.
   double bound_of_w() const { return bound_of_w_; }
   double steps_of_verlet() const;
-  // The work of evaluating f once.
+  // The work of evaluating f once, and how often a run did: the mean over its parts.
   double work_of_force() const;
+  double forces(const Trial& trial) const;
   // The number of forces that are so much work.
   std::int64_t forces_within(double work) const;
   double seconds() const { return seconds_since(begin_); }
@@ -50,7 +51,7 @@ class Runs {
  private:
   double limit_;
   std::chrono::steady_clock::time_point begin_ = clock_now();
-  double bound_of_w_;
+  double bound_of_w_, parts_;
   Stage stage_;
   std::deque<Trial> all_;
   mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // by these scales

@@ -58,8 +58,12 @@ bool Search::judge(double accuracy) {
 }
 
 bool Search::judge_at_last(double accuracy, bool implicitly) {
-  const bool is_found =
-      judge_by_error_control(accuracy, implicitly, runs_.forces_within(rules_.much_work));
+  // They may take as much work as all that failed.
+  double forces = 0;
+  for (const Trial& trial : runs_.all()) forces += runs_.forces(trial);
+  const bool is_found = judge_by_error_control(
+      accuracy, implicitly,
+      std::max(runs_.forces_within(rules_.much_work), static_cast<std::int64_t>(forces)));
   // The finest run tells whether rounding is the reason.
   if (!is_found && finest_ && !check_.conditioning()) check_.condition(*finest_, accuracy);
   return is_found;
