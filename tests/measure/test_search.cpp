@@ -3,6 +3,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/failure.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -109,6 +110,49 @@ BOOST_AUTO_TEST_CASE(a_pushed_run_checks_and_is_no_answer) {
     BOOST_TEST(trial.path.front().q.allFinite());
   }
   BOOST_TEST(pushed > 0);
+}
+
+// The second of a pair begins one rounding away, so that both are apart by at least its effect.
+BOOST_AUTO_TEST_CASE(a_pair_of_runs_shows_what_rounding_does) {
+  const Scene scene = drawn("cloth", {{"nodes", 20}});
+  const ReducedScene model(scene);
+  Runs runs(model, 0.1, AccuracyOf::positions, seconds, nullptr, Rules{});
+  const Trial& first = runs.make(*find_method("verlet"), 1e-4);
+  runs.measure_by(first);
+  Check check(runs);
+  check.condition_by_pair(first, 1e-9, 1e-3);
+  BOOST_TEST_REQUIRE(check.conditioning().has_value());
+  BOOST_TEST(check.conditioning()->effect == 1e-9);
+  BOOST_TEST(runs.all().size() == 1u);
+  // A distance that would take much of the accuracy may be that of the steps: the run is repeated.
+  check.condition_by_pair(first, 1e-3, 1e-3);
+  BOOST_TEST_REQUIRE(check.conditioning().has_value());
+  BOOST_TEST(check.conditioning()->effect > 0.0);
+  BOOST_TEST(check.conditioning()->effect < 1e-9);
+  BOOST_TEST(runs.all().size() == 2u);
+}
+
+BOOST_AUTO_TEST_CASE(forces_are_counted_as_if_all_parts_were_one) {
+  Scene scene = drawn("pendulum");
+  const auto forces = [&] {
+    const ReducedScene model(scene);
+    Runs runs(model, 1, AccuracyOf::positions, seconds, nullptr, Rules{});
+    return runs.forces(runs.make(*find_method("verlet"), 1e-3));
+  };
+  const double of_one = forces();
+  BOOST_TEST(of_one >= 1000);
+  const auto nodes = static_cast<Index>(scene.nodes.size());
+  const auto springs = scene.springs;
+  for (Node node : std::vector<Node>(scene.nodes)) {
+    node.position.x() += 10;
+    scene.nodes.push_back(node);
+  }
+  for (Spring spring : springs) {
+    for (auto& node : spring.nodes) node += nodes;
+    scene.springs.push_back(spring);
+  }
+  BOOST_TEST_REQUIRE(ReducedScene(scene).unknowns_by_part().size() == 2u);
+  BOOST_TEST(forces() == of_one);
 }
 
 BOOST_AUTO_TEST_CASE(a_motion_that_lives_in_exact_symmetry_alone_is_told_from_its_drawing) {
