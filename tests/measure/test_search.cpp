@@ -203,18 +203,23 @@ BOOST_AUTO_TEST_CASE(what_stands_in_balance_is_known_until_rounding_has_grown) {
   Scene scene{.name = "standing", .dimension = 2, .gravity = {0, -9.81, 0}};
   scene.nodes = {{.pinned = true}, {.position = {0, 1, 0}, .mass = 0.2}};
   scene.springs = {{{0, 1}, {.stiffness = 4000, .rest_length = 1 + 0.2 * 9.81 / 4000}}};
-  const ReducedScene model(scene);
-  const auto bound = [&](double until) {
-    Search search(model, until, AccuracyOf::positions, seconds, &scene);
-    const Trial* found = search.find(1e-6);
-    return found ? search.check().bound(*found)->error : INFINITY;
-  };
+  const ReducedScene on_a_line(scene),
+      in_the_plane(scene, Reductions().without(Reduction::dimension));
   // A rounding of the height to the side, and one of the rest length beside w^2 = k/m: the bound is
   // no less than half of the first, and no more than some hundred of both.
   const double grown = 1.1e-16 * std::cosh(std::sqrt(9.81) * 3);
-  BOOST_TEST(bound(3) > grown / 2);
-  BOOST_TEST(bound(3) < 1000 * grown);
-  BOOST_TEST(bound(12) == INFINITY);
+  for (const ReducedScene* model : {&on_a_line, &in_the_plane}) {
+    const auto bound = [&](double until) {
+      Search search(*model, until, AccuracyOf::positions, seconds, &scene);
+      const Trial* found = search.find(1e-6);
+      return found ? search.check().bound(*found)->error : INFINITY;
+    };
+    BOOST_TEST_CONTEXT(model->system().size() << " unknowns") {
+      BOOST_TEST(bound(3) > grown / 2);
+      BOOST_TEST(bound(3) < 1000 * grown);
+      BOOST_TEST(bound(12) == INFINITY);
+    }
+  }
 }
 
 // The bound of a motion of 1e-7 in closed form knows that positions are of the order of 1.
