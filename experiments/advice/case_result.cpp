@@ -15,12 +15,6 @@
 namespace qddot::judged_advice {
 namespace {
 
-// The fastest run of any method to an accuracy, found by trying them all.
-struct Hindsight {
-  std::vector<Point> points;  // all that were taken
-  Point best;                 // not reached_end where no run came so far
-};
-
 // A run, and all runs of a case together [s].
 constexpr double longest_run = 2, patience = 25;
 // Runs so much slower than the fastest in one timing may be as fast in several.
@@ -50,42 +44,44 @@ std::vector<const Method*> in_order_of_promise(const System& system) {
 // Finds the fastest run that is known to be within `accuracy` of the reference. It tries all
 // methods that fit the scene and may be the fastest, the most promising ones first, for half a
 // minute in all. A ladder ends when its runs take longer than the fastest run so far. The best few
-// runs are timed `repeats` times.
-Hindsight hindsight(const ReducedScene& scene, double until, double accuracy,
-                    const Reference& reference, int repeats) {
-  Hindsight found;
-  found.best.outcome = Outcome::over_budget;
+// runs are timed `repeats` times. It is over budget if no run came so far.
+Point best_in_hindsight(const ReducedScene& scene, double until, double accuracy,
+                        const Reference& reference, int repeats) {
+  Point best;
+  best.outcome = Outcome::over_budget;
   Effort effort{.seconds = longest_run, .repeats = 1};
   const auto is_enough = [&](const Point& point) {
     return judged(point, reference).is_within(accuracy);
   };
   const auto begin = std::chrono::steady_clock::now();
+  std::vector<Point> enough;
   for (const Method* method : in_order_of_promise(scene.system())) {
     if (seconds_since(begin) > patience) break;
-    const auto see = [&](const Point& point) {
-      found.points.push_back(point);
-      if (point.outcome != Outcome::reached_end || !is_enough(point)) return;
-      if (found.best.outcome == Outcome::reached_end && point.time_min >= found.best.time_min)
-        return;
-      found.best = point;
-      effort.seconds = std::min(effort.seconds, close_race * point.time_min + 1e-4);
-    };
-    measure_ladder(*method, scene, until, reference, effort, see, is_enough);
+    const auto see = [](const Point&) {};
+    const std::vector<Point> points =
+        measure_ladder(*method, scene, until, reference, effort, see, is_enough);
+    // Luck does not count.
+    const auto all_judged = judged_together(points, reference, judge_of(reference));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (points[i].outcome == Outcome::reached_end && all_judged[i].is_within(accuracy))
+        enough.push_back(points[i]);
+    }
+    if (enough.empty()) continue;
+    best = *std::ranges::min_element(enough, {}, &Point::time_min);
+    effort.seconds = std::min(effort.seconds, close_race * best.time_min + 1e-4);
   }
   std::vector<Point> near;
-  for (const Point& point : found.points) {
-    if (point.outcome == Outcome::reached_end && is_enough(point) &&
-        point.time_min <= close_race * found.best.time_min)
-      near.push_back(point);
+  for (const Point& point : enough) {
+    if (point.time_min <= close_race * best.time_min) near.push_back(point);
   }
   effort = {.seconds = 4 * longest_run, .repeats = repeats};
   for (const Point& point : near) {
     const Point timed = measure_point(*point.method, point.value, scene, until, reference, effort);
     if (timed.outcome == Outcome::reached_end &&
-        (timed.time_min <= found.best.time_min || found.best.timed_runs < repeats))
-      found.best = timed;
+        (timed.time_min <= best.time_min || best.timed_runs < repeats))
+      best = timed;
   }
-  return found;
+  return best;
 }
 
 // Fraction of the accuracy that the reference may be off by.
@@ -104,11 +100,11 @@ void measure_worth(CaseResult& result, const ReducedScene& model, const Referenc
                    const Answer& answer, int repeats) {
   result.error =
       errors_between(model, answer.end, reference.end, reference.energy, reference.scales).position;
-  const Hindsight found = hindsight(model, result.until, result.accuracy, reference, repeats);
-  if (found.best.outcome == Outcome::reached_end) {
-    result.best_method = found.best.method->name;
-    result.best_value = found.best.value;
-    result.best_seconds = found.best.time;
+  const Point best = best_in_hindsight(model, result.until, result.accuracy, reference, repeats);
+  if (best.outcome == Outcome::reached_end) {
+    result.best_method = best.method->name;
+    result.best_value = best.value;
+    result.best_seconds = best.time;
   }
   const Point own = measure_point(*answer.method, answer.value, model, result.until, reference,
                                   {.seconds = 60, .repeats = repeats});

@@ -105,6 +105,7 @@ bool Search::judge_by_forecast(double accuracy) {
                     std::min(w_start_ * growth, linear_limit(*first->method) / first->value));
   const double aim = rules_.doubt * rules_.part_of_judge * accuracy;
   const Trial* tried = first;
+  bool is_first_repeated = false;
   for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
        ++round) {
     const double unseen = round == 0 ? 1 : rules_.doubt_of_two();
@@ -120,7 +121,9 @@ bool Search::judge_by_forecast(double accuracy) {
     }
     const auto chosen = explicit_candidate(error / rules_.finer, tried->method, unseen);
     if (!chosen) return false;
-    const Trial& checked = runs_.make_pushed(*chosen->method, chosen->value);
+    const Trial* pushed = runs_.find(*chosen->method, chosen->value, true);
+    if (!pushed) pushed = &runs_.make_pushed(*chosen->method, chosen->value);
+    const Trial& checked = *pushed;
     forecast_->learn(check_);
     if (!checked.reached_end()) continue;
     runs_.measure_by(checked);
@@ -136,23 +139,26 @@ bool Search::judge_by_forecast(double accuracy) {
     forecast_->learn(*tried, between / (1 - share));
     // The check's own bound may do where that of the run does not.
     const Trial* known = tried;
+    double pushed_by = std::max(between, runs_.distance(*tried, checked));
     if (!check_.is_known(*tried, accuracy) &&
-        check_.error_of(checked) <= rules_.clearly_below * accuracy)
+        check_.error_of(checked) <= rules_.clearly_below * accuracy) {
       known = &runs_.make(*checked.method, checked.value);
+      pushed_by = runs_.distance(*known, checked);
+    }
     if (check_.is_known(*known, accuracy)) {
       // The first run tells cheaply what rounding does; one that resolves the motion, if need be.
       const auto is_known_beside_rounding = [&] {
         return check_.conditioning() && check_.is_known(*known, accuracy);
       };
-      check_.condition_by_pair(*first, std::max(between, runs_.distance(*tried, checked)),
-                               accuracy);
+      check_.condition_by_pair(*first, pushed_by, accuracy);
       if (!is_known_beside_rounding() && tried != first) check_.condition(*tried, accuracy);
       return is_known_beside_rounding();
     }
     // Runs that should be near each other and are not: rounding may be the reason. The first run
     // tells cheaply whether it leaves nothing known.
     if (between > rules_.small) {
-      check_.condition(*first, accuracy);
+      if (!is_first_repeated) check_.condition(*first, accuracy);
+      is_first_repeated = true;
       if (!check_.is_hopeless(rules_.small)) check_.set({});
       // Errors so much larger than the forecast show no order.
       if (error < rules_.small * rules_.small * between) return false;

@@ -20,10 +20,9 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
   for (double rtol = std::min(accuracy, rules_.largest_tolerance); rtol >= least_accuracy;
        rtol /= 10) {
     if (runs_.seconds_left() <= 0 || forces_left <= 0) break;
-    // Three runs and the repetition of the finest take about six times as long as the first.
     const bool is_first = runs.empty();
     const std::int64_t most_forces =
-        is_first ? std::max<std::int64_t>(1, forces_left / 6) : forces_left;
+        is_first ? std::max<std::int64_t>(1, forces_left / runs_of_three) : forces_left;
     const Trial& trial = runs_.make(method, rtol, {.forces = most_forces});
     forces_left -= std::llround(runs_.forces(trial));
     if (!trial.path.empty()) runs_.measure_by(trial);
@@ -140,18 +139,29 @@ bool Search::judge_in_closed_form(double accuracy) {
   return error <= accuracy;
 }
 
+// The explicit forces that take as long as an implicit step.
+double Search::forces_of_implicit_step(int order) {
+  if (!implicit_force_) {
+    const SymbolicFactorization factors = analyse(system_.stiffness_pattern());
+    implicit_force_ = rules_.implicit_force +
+                      (rules_.entry * factors.entries() + rules_.operation * factors.operations()) /
+                          runs_.work_of_force();
+  }
+  return order * *implicit_force_;
+}
+
 // The forces that an implicit run may evaluate if it is to take a part of the work of Verlet's
 // method; zero if that is no more than a few steps, and for forces of the caller's own: a long
-// implicit step may leap over a core that repels. It solves with each force, and factorises about
-// once a step, which has about as many forces as its order.
-std::int64_t Search::forces_worth_implicit_steps(double accuracy) const {
+// implicit step may leap over a core that repels.
+std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
   const auto all = with_error_control(true, accuracy);
   if (!runs_.stage().has_springs() || all.empty()) return 0;
-  const SymbolicFactorization factors = analyse(system_.stiffness_pattern());
-  const double operations = 4 * factors.entries() + factors.operations() / all.front()->order;
-  const double of_force = 1 + operations / (rules_.operations * runs_.work_of_force());
-  const double worth = rules_.short_cut * runs_.steps_of_verlet() / of_force;
-  return worth > rules_.places ? static_cast<std::int64_t>(worth) : 0;
+  // Factors are not even analysed for less than some steps of the cheapest kind.
+  const double most = rules_.short_cut * runs_.steps_of_verlet(),
+               fewest = rules_.places * all.front()->order;
+  if (most < fewest * rules_.implicit_force) return 0;
+  const double worth = most / forces_of_implicit_step(1);
+  return worth > fewest ? static_cast<std::int64_t>(worth) : 0;
 }
 
 // The energy of a run is its own judge, as the exact motion keeps it. A run with error control

@@ -20,7 +20,7 @@ std::optional<Candidate> Search::promised(double error, double seconds) const {
 
 // The first run of a method that has no forecast without one: of those that may be faster than the
 // answer, the one that evaluates the fewest forces.
-std::optional<Candidate> Search::first_of_method(const Trial& answer, double accuracy) const {
+std::optional<Candidate> Search::first_of_method(const Trial& answer, double accuracy) {
   std::optional<Candidate> cheapest;
   double fewest = runs_.forces(answer);
   for (const Method& method : methods()) {
@@ -31,25 +31,31 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double acc
         (is_implicit && runs_.stage().of() == AccuracyOf::energy) ||
         std::ranges::find(runs_.all(), &method, &Trial::method) != runs_.all().end())
       continue;
-    // Forces that the run evaluates at least: a step of order p takes about p of them.
-    double value = std::clamp(accuracy, 10 * least_accuracy, rules_.largest_tolerance), forces = 0;
-    if (method.knob == Knob::step_size) {
+    // The work of the run at least, in forces: a step of order p takes about p of them.
+    double value = std::clamp(accuracy, 10 * least_accuracy, rules_.largest_tolerance),
+           steps = rules_.places, of_step = method.knob == Knob::rtol ? method.order : 1;
+    // Nonlinear equations take at least two solves.
+    if (is_implicit)
+      of_step =
+          forces_of_implicit_step(method.order) * (method.is(Trait::linearly_implicit) ? 1 : 2);
+    if (method.knob == Knob::rtol) {
+      // Steps of order p leave the accuracy if h w_p is its p-th root.
+      steps = std::max(steps, until_ * forecast_->own().at(method.order) *
+                                  std::pow(accuracy, -1.0 / method.order));
+      if (method.is(Trait::bounds_steps)) steps = std::max(steps, until_ * forecast_->w_motion());
+    } else {
       // Steps that resolve the motion's own frequency of order 2, or the soft forces.
-      const double own = method.asks(Need::split_forces)
-                             ? resolved_frequency(method, system_, model_.initial().q)
-                             : forecast_->own().at(2);
-      double steps = std::max(rules_.places, std::ceil(until_ * own));
+      const bool splits = method.asks(Need::split_forces);
+      const double own =
+          splits ? resolved_frequency(method, system_, model_.initial().q) : forecast_->own().at(2);
+      steps = std::max(steps, std::ceil(until_ * own));
       if (has_linear_step(method))
         steps = std::max(steps, std::ceil(until_ / forecast_->step_by_frequency(method, accuracy)));
       value = until_ / steps;
-      forces = steps * (is_implicit ? rules_.implicit_step : 1);
-    } else {
-      // Steps of order p leave the accuracy if h w_p is its p-th root.
-      double steps =
-          until_ * forecast_->own().at(method.order) * std::pow(accuracy, -1.0 / method.order);
-      if (method.is(Trait::bounds_steps)) steps = std::max(steps, until_ * forecast_->w_motion());
-      forces = steps * (is_implicit ? rules_.implicit_step : method.order);
+      // Stiff forces are evaluated as often as by Verlet's method.
+      if (splits) steps = std::max(steps, runs_.steps_of_verlet());
     }
+    const double forces = steps * of_step;
     if (forces >= fewest) continue;
     fewest = forces;
     cheapest = {&method, value};

@@ -39,8 +39,10 @@ struct Rules {
   double much_work = 1e8;
   // An implicit judge may take this part of the work of Verlet's method.
   double short_cut = 0.3;
-  // Operations of a factorisation that take as long as the force on an unknown.
-  double operations = 10;
+  // An implicit step of order p takes about p solves, with a force each. One takes as long as so
+  // many forces, and for each entry of the factors a part of the force on an unknown. Operations
+  // of a factorisation are faster than that.
+  double implicit_force = 3, entry = 0.1, operation = 5e-4;
 
   // The check of a run with fixed steps has an error that is expected to be smaller by this factor.
   double finer = 4;
@@ -52,8 +54,6 @@ struct Rules {
   // The time [s] that nobody notices, and the part of the answer's time, for runs that may be
   // faster.
   double unnoticed = 0.02, part_of_answer = 0.25;
-  // Explicit forces that take as long as an implicit step.
-  double implicit_step = 20;
   // Displacements of no more roundings of the positions than this are no motion, and closed forms
   // are as accurate as that.
   double rest = 30;
@@ -62,7 +62,7 @@ struct Rules {
 };
 
 // Each rule with its name.
-inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 23> all_rules = {{
+inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 24> all_rules = {{
     {"doubt", &Rules::doubt},
     {"small", &Rules::small},
     {"clearly_below", &Rules::clearly_below},
@@ -78,13 +78,14 @@ inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 23> al
     {"little_work", &Rules::little_work},
     {"much_work", &Rules::much_work},
     {"short_cut", &Rules::short_cut},
-    {"operations", &Rules::operations},
+    {"implicit_force", &Rules::implicit_force},
+    {"entry", &Rules::entry},
+    {"operation", &Rules::operation},
     {"finer", &Rules::finer},
     {"rounds", &Rules::rounds},
     {"unrelated_orders", &Rules::unrelated_orders},
     {"unnoticed", &Rules::unnoticed},
     {"part_of_answer", &Rules::part_of_answer},
-    {"implicit_step", &Rules::implicit_step},
     {"rest", &Rules::rest},
 }};
 

@@ -51,12 +51,14 @@ const Trial& Runs::make_pushed(const Method& method, double value, const Push& p
   return all_.back();
 }
 
-bool Runs::has(const Method& method, double value) const {
+const Trial* Runs::find(const Method& method, double value, bool is_pushed) const {
   // Knobs this near give the same error.
   const double same = rules().small * rules().small;
-  return std::ranges::any_of(all_, [&](const Trial& trial) {
-    return trial.method == &method && !trial.is_pushed && std::abs(trial.value / value - 1) < same;
+  const auto found = std::ranges::find_if(all_, [&](const Trial& trial) {
+    return trial.method == &method && trial.is_pushed == is_pushed &&
+           std::abs(trial.value / value - 1) < same;
   });
+  return found == all_.end() ? nullptr : &*found;
 }
 
 void Runs::look_within_steps(const Method& method, double value) {

@@ -20,8 +20,9 @@ class Runs {
   const Trial& make(const Method& method, double value, const Limits& limits = {});
   // Makes it from a start that is pushed.
   const Trial& make_pushed(const Method& method, double value, const Push& push = {});
-  // Whether the run was made before.
-  bool has(const Method& method, double value) const;
+  // The run that was made before; nullptr if there is none.
+  const Trial* find(const Method& method, double value, bool is_pushed = false) const;
+  bool has(const Method& method, double value) const { return find(method, value) != nullptr; }
 
   // Looks also within the steps of that run, which is none of these. Call before the first one.
   void look_within_steps(const Method& method, double value);

@@ -46,6 +46,9 @@ class Search {
   double w_start() const { return w_start_; }
 
  private:
+  // Three runs and the repetition of the finest take about so many times as long as the first.
+  static constexpr int runs_of_three = 6;
+
   // Each finds a judge for the accuracy; false if it does not.
   bool judge(double accuracy);
   bool judge_in_closed_form(double accuracy);
@@ -56,13 +59,14 @@ class Search {
   bool judge_energy(double accuracy);
 
   std::vector<const Method*> with_error_control(bool implicitly, double accuracy) const;
-  std::int64_t forces_worth_implicit_steps(double accuracy) const;
+  double forces_of_implicit_step(int order);
+  std::int64_t forces_worth_implicit_steps(double accuracy);
   const Trial* survey();
   std::optional<Candidate> explicit_candidate(double error, const Method* checked,
                                               double unseen) const;
   bool may_forecast(const Trial& trial);
   std::optional<Candidate> promised(double error, double seconds) const;
-  std::optional<Candidate> first_of_method(const Trial& answer, double accuracy) const;
+  std::optional<Candidate> first_of_method(const Trial& answer, double accuracy);
   const Trial* race(const Trial* answer, double accuracy);
 
   const ReducedScene& model_;
@@ -75,6 +79,7 @@ class Search {
   double w_start_;
   const Trial* finest_ = nullptr;  // of the last runs with error control that gave no judge
   bool is_judged_by_forecast_ = false;
+  std::optional<double> implicit_force_;  // explicit ones that take as long
 };
 
 }  // namespace qddot::inline measure
