@@ -40,9 +40,10 @@ void Check::condition(const Trial& judge, double accuracy) {
   const auto repeat = [&](std::uint32_t seed) {
     const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.seed = seed});
     if (!twin.reached_end()) return false;
-    const double effect = beyond_own_error(judge, runs_.distance(judge, twin));
-    if (found.differences.empty() || effect > found.effect)
-      found.differences = stage.distances(judge, twin);
+    const std::vector<double> differences = stage.distances(judge, twin);
+    const double effect = beyond_own_error(
+        judge, stage.of() == AccuracyOf::path ? std::ranges::max(differences) : differences.back());
+    if (found.differences.empty() || effect > found.effect) found.differences = differences;
     found.effect = std::max(found.effect, effect);
     return true;
   };

@@ -23,8 +23,10 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
     const bool is_first = runs.empty();
     const std::int64_t most_forces =
         is_first ? std::max<std::int64_t>(1, forces_left / runs_of_three) : forces_left;
-    const Trial& trial = runs_.make(method, rtol, {.forces = most_forces});
-    forces_left -= std::llround(runs_.forces(trial));
+    const Trial* before = runs_.find(method, rtol);
+    const bool is_new = !before || !before->reached_end();
+    const Trial& trial = is_new ? runs_.make(method, rtol, {.forces = most_forces}) : *before;
+    if (is_new) forces_left -= std::llround(runs_.forces(trial));
     if (!trial.path.empty()) runs_.measure_by(trial);
     if (!trial.reached_end()) {
       if (trial.summary.outcome == Outcome::over_budget || !is_first) break;
