@@ -28,9 +28,21 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double acc
     if (is_forecast_by_frequency(method) || method.order < 2 || !applies_to(method, system_) ||
         method.family == Family::sundials || method.asks(Need::laplacian) ||
         (system_.has_massless() && !method.is(Trait::accepts_massless)) ||
-        (is_implicit && runs_.stage().of() == AccuracyOf::energy) ||
-        std::ranges::find(runs_.all(), &method, &Trial::method) != runs_.all().end())
+        (is_implicit && runs_.stage().of() == AccuracyOf::energy))
       continue;
+    const bool splits = method.asks(Need::split_forces);
+    // Stiff forces are evaluated as often as by Verlet's method.
+    if (splits && runs_.steps_of_verlet() >= fewest) continue;
+    // A step that was too long says that the first run is still to come.
+    double failed = INFINITY;
+    bool is_known = false;
+    for (const Trial& trial : runs_.all()) {
+      if (trial.method != &method) continue;
+      failed = std::min(failed, trial.value);
+      is_known |= method.knob == Knob::rtol || trial.reached_end() ||
+                  trial.summary.outcome == Outcome::over_budget;
+    }
+    if (is_known) continue;
     // The work of the run at least, in forces: a step of order p takes about p of them.
     double value = std::clamp(accuracy, 10 * least_accuracy, rules_.largest_tolerance),
            steps = rules_.places, of_step = method.knob == Knob::rtol ? method.order : 1;
@@ -45,20 +57,19 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double acc
       if (method.is(Trait::bounds_steps)) steps = std::max(steps, until_ * forecast_->w_motion());
     } else {
       // Steps that resolve the motion's own frequency of order 2, or the soft forces.
-      const bool splits = method.asks(Need::split_forces);
       const double own =
           splits ? resolved_frequency(method, system_, model_.initial().q) : forecast_->own().at(2);
       steps = std::max(steps, std::ceil(until_ * own));
       if (has_linear_step(method))
         steps = std::max(steps, std::ceil(until_ / forecast_->step_by_frequency(method, accuracy)));
+      steps = std::max(steps, rules_.doubt_of_two() * until_ / failed);
       value = until_ / steps;
-      // Stiff forces are evaluated as often as by Verlet's method.
       if (splits) steps = std::max(steps, runs_.steps_of_verlet());
     }
     const double forces = steps * of_step;
     if (forces >= fewest) continue;
     fewest = forces;
-    cheapest = {&method, value};
+    cheapest = Candidate{.method = &method, .value = value, .forces = forces};
   }
   return cheapest;
 }
@@ -75,7 +86,8 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
     if (left <= 0) break;
     const double seconds = std::min(left, rules_.clearly_below * answer->seconds);
     std::optional<Candidate> next = promised(aim, seconds);
-    if (!next) next = first_of_method(*answer, accuracy);
+    const auto first = first_of_method(*answer, accuracy);
+    if (!next || (first && first->forces < next->forces)) next = first;
     if (!next) break;
     constexpr double of_clock = 1e-5;  // [s], the time to see that it is over
     const Trial& trial = runs_.make(*next->method, next->value, {.seconds = seconds + of_clock});
