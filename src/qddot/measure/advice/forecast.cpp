@@ -79,7 +79,8 @@ double Forecast::forces(const Method& method, double value) const {
 double Forecast::seconds(const Method& method, double value) const {
   const auto seen = seen_.find(&method);
   if (seen != seen_.end()) return seen->second.seconds * steps_over(method, value, seen->second);
-  return force_seconds_ * forces(method, value);
+  const double a_force = std::isfinite(seconds_a_force_) ? seconds_a_force_ : force_seconds_;
+  return a_force * forces(method, value);
 }
 
 double Forecast::largest_step(const Method& method) const {
@@ -174,6 +175,7 @@ void Forecast::learn(const Trial& trial, double error) {
   if (method.order == 0 || !(error > 0)) return;
   seen_[&method] = {trial.value, error, trial.seconds, runs_.forces(trial)};
   if (!is_forecast_by_frequency(method)) return;
+  seconds_a_force_ = std::min(seconds_a_force_, trial.seconds / runs_.forces(trial));
   const double expected = by_frequency(method, trial.value);
   if (std::isfinite(expected) && expected > 0) {
     by_order_[method.order] = error / expected;

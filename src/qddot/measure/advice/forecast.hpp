@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -28,7 +29,8 @@ double power_of_error(const Method& method);
 // as |q'| t / |q - q(0)|, which is right if errors add up. Each run with a known error corrects the
 // sensitivity of its method, and that of other methods by a part. Other methods have no forecast
 // before their first run. After it, their error is proportional to h^order or to rtol. The time is
-// the number of steps times the time of a step, at first the time of its forces.
+// the number of steps times the time of a step. A method that was not seen takes as long for each
+// force as the fastest one that was.
 class Forecast {
  public:
   // Borrows the runs. `path` is the motion as one of them saw it, `w_motion` the largest frequency
@@ -77,6 +79,7 @@ class Forecast {
   const Rules& rules_;
   OwnFrequencies own_;
   double w_motion_, force_seconds_, sensitivity_, until_;
+  double seconds_a_force_ = std::numeric_limits<double>::infinity();  // of the runs that were seen
   std::map<const Method*, Seen> seen_;
   std::map<int, double> by_order_;          // error seen over error expected, of the last run
   std::map<const Method*, double> failed_;  // the smallest step that failed [s]

@@ -1,6 +1,7 @@
 // Pairs of runs that a forecast chooses, where runs with error control would take long.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "qddot/analysis/largest_frequency.hpp"
@@ -83,8 +84,9 @@ std::optional<Candidate> Search::explicit_candidate(double error, const Method* 
     // Largest steps are limited, and whole numbers of steps rounded.
     const double most = (1 + rules_.small * rules_.small) * error / doubt;
     if (!own || own->error > most) continue;
-    const bool is_known = forecast_->has_seen(*c.method) || c.method == checked;
-    const double forces = own->forces * (is_known ? 1 : unseen);
+    const bool has_run =
+        std::ranges::find(runs_.all(), c.method, &Trial::method) != runs_.all().end();
+    const double forces = own->forces * (has_run ? 1 : unseen);
     if (forces >= least) continue;
     least = forces;
     best = own;
@@ -105,7 +107,7 @@ bool Search::judge_by_forecast(double accuracy) {
                     std::min(w_start_ * growth, linear_limit(*first->method) / first->value));
   const double aim = rules_.doubt * rules_.part_of_judge * accuracy;
   const Trial* tried = first;
-  bool is_first_repeated = false;
+  std::optional<double> effect_on_first;
   for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
        ++round) {
     const double unseen = round == 0 ? 1 : rules_.doubt_of_two();
@@ -157,13 +159,17 @@ bool Search::judge_by_forecast(double accuracy) {
     // Runs that should be near each other and are not: rounding may be the reason. The first run
     // tells cheaply whether it leaves nothing known.
     if (between > rules_.small) {
-      if (!is_first_repeated) check_.condition(*first, accuracy);
-      is_first_repeated = true;
-      if (!check_.is_hopeless(rules_.small)) check_.set({});
+      if (!effect_on_first) {
+        check_.condition(*first, accuracy);
+        if (check_.is_hopeless(rules_.small)) return false;
+        effect_on_first = check_.conditioning() ? check_.conditioning()->worst() : INFINITY;
+        check_.set({});
+      }
       // Errors so much larger than the forecast show no order.
       if (error < rules_.small * rules_.small * between) return false;
     }
-    if (round > 0 && !check_.conditioning()) check_.condition(*tried, accuracy);
+    const bool is_calm = effect_on_first && *effect_on_first <= rules_.small * accuracy;
+    if (round > 0 && !is_calm && !check_.conditioning()) check_.condition(*tried, accuracy);
     if (check_.is_hopeless(accuracy)) return false;
   }
   return false;

@@ -77,7 +77,7 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double acc
 const Trial* Search::race(const Trial* answer, double accuracy) {
   if (answer->method->order == 0 || !check_.has_judge() || runs_.stage().rests()) return answer;
   const double end =
-      runs_.seconds() + std::max(rules_.unnoticed, rules_.part_of_answer * answer->seconds);
+      std::max(rules_.unnoticed, runs_.seconds() + rules_.part_of_answer * answer->seconds);
   if (!may_forecast(*answer)) return answer;
   forecast_->learn(check_);
   const double aim = (1 - rules_.doubt * rules_.part_of_judge) * accuracy;

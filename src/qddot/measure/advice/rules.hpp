@@ -51,9 +51,9 @@ struct Rules {
   // Corrections of a forecast by errors of methods whose orders differ by this say nothing.
   double unrelated_orders = 8;
 
-  // The time [s] that nobody notices, and the part of the answer's time, for runs that may be
-  // faster.
-  double unnoticed = 0.02, part_of_answer = 0.25;
+  // Runs that may be faster begin while a search has taken no more time [s] than nobody notices,
+  // and for a part of the answer's time.
+  double unnoticed = 0.02, part_of_answer = 0.5;
   // Displacements of no more roundings of the positions than this are no motion, and closed forms
   // are as accurate as that.
   double rest = 30;
