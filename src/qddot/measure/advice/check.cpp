@@ -37,12 +37,15 @@ void Check::condition(const Trial& judge, double accuracy) {
     return;
   }
   conditioning_.reset();
+  double apart = 0;
   const auto repeat = [&](std::uint32_t seed) {
     const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.seed = seed});
     if (!twin.reached_end()) return false;
     const std::vector<double> differences = stage.distances(judge, twin);
-    const double effect = beyond_own_error(
-        judge, stage.of() == AccuracyOf::path ? std::ranges::max(differences) : differences.back());
+    const double by =
+        stage.of() == AccuracyOf::path ? std::ranges::max(differences) : differences.back();
+    apart = std::max(apart, by);
+    const double effect = beyond_own_error(judge, by);
     if (found.differences.empty() || effect > found.effect) found.differences = differences;
     found.effect = std::max(found.effect, effect);
     return true;
@@ -50,13 +53,25 @@ void Check::condition(const Trial& judge, double accuracy) {
   if (!repeat(1)) return;
   // One pair of runs may be near each other by luck. So its distance counts twice as often as the
   // largest of three.
-  double share = rules.doubt_of_two() * found.effect;
+  double share = std::max(rules.doubt_of_two() * found.effect, by_chance(judge, apart));
   if (share > rules.part_of_judge * accuracy && found.effect <= accuracy) {
     if (!repeat(2) || !repeat(3)) return;
-    share = rules.doubt * found.effect;
+    share = std::max(rules.doubt * found.effect, by_chance(judge, apart) / rules.doubt);
   }
   found.share = std::max(found.share, share);
   conditioning_ = found;
+}
+
+// Steps of a tenth of the tolerance leave a tenth of the error, and their repetition about as much.
+// If it is farther away, the runs differ by rounding. Where a motion has one direction in which
+// errors grow, two of three such runs are near each other by chance.
+double Check::by_chance(const Trial& judge, double apart) const {
+  const Rules& rules = runs_.rules();
+  const auto judged = judges_.find(&judge);
+  if (judged == judges_.end() || judge.method->knob != Knob::rtol) return 0;
+  const double own = judged->second.error;
+  if (apart <= rules.part_of_judge * own) return 0;
+  return std::max(rules.doubt * apart, own);
 }
 
 void Check::condition_by_pair(const Trial& first, double between, double accuracy) {

@@ -72,6 +72,7 @@ class Check {
   void condition_rest(const Trial& judge);
   double between_steps(const Trial& trial) const;
   double beyond_own_error(const Trial& trial, double apart_by) const;
+  double by_chance(const Trial& judge, double apart) const;
 
   Runs& runs_;
   std::optional<Conditioning> conditioning_;

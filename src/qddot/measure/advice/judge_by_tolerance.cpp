@@ -48,14 +48,16 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
     if (runs.size() < 3) continue;
     const Trial &c = *runs.back(), &b = *runs[runs.size() - 2], &a = *runs[runs.size() - 3];
     const double outer = runs_.distance_on_the_way(a, c), inner = runs_.distance_on_the_way(b, c);
-    const bool together = inner <= rules_.drawn_together * outer;
+    // A run that is far away is not on its way.
+    const bool together = inner <= rules_.drawn_together * outer && outer <= rules_.small;
     if (!together && doubt * std::max(inner, outer) > accuracy / 2) continue;
     check_.accept(a, {doubt * std::max(runs_.distance(a, c), runs_.distance(a, b)), &c});
     check_.accept(b, {doubt * std::max(inner, runs_.distance(b, c)), &c});
     check_.accept(c, {doubt * inner, &b, true});
     if (check_.error_of(c) > rules_.part_of_judge * accuracy) continue;
     check_.condition(c, accuracy);
-    return !check_.is_hopeless(accuracy);
+    if (check_.is_hopeless(accuracy)) return false;
+    if (check_.is_known(c, accuracy)) return true;
   }
   finest_ = runs.size() < 3 ? nullptr : runs.back();
   return false;
