@@ -9,6 +9,14 @@
 
 namespace qddot::inline measure {
 
+void Check::accept(const Trial& judge, const Bound& own) {
+  std::erase_if(judges_, [&](const auto& former) {
+    const double both = former.second.error + own.error;
+    return runs_.distance(*former.first, judge) > runs_.rules().doubt * both;
+  });
+  judges_[&judge] = own;
+}
+
 const Trial* Check::judge() const {
   const auto least =
       std::ranges::min_element(judges_, {}, [](const auto& judge) { return judge.second.error; });

@@ -35,8 +35,9 @@ class Check {
   // Borrows the runs.
   explicit Check(Runs& runs) : runs_(runs) {}
 
-  // Takes the run as a judge; the bound is that of its own error, without rounding.
-  void accept(const Trial& judge, const Bound& own) { judges_[&judge] = own; }
+  // Takes the run as a judge; the bound is that of its own error, without rounding. Former judges
+  // that are farther away than both bounds allow are judges no more.
+  void accept(const Trial& judge, const Bound& own);
   bool has_judge() const { return !judges_.empty(); }
   // The judge of least error; nullptr if there is none.
   const Trial* judge() const;

@@ -51,9 +51,11 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
     // A run that is far away is not on its way.
     const bool together = inner <= rules_.drawn_together * outer && outer <= rules_.small;
     if (!together && doubt * std::max(inner, outer) > accuracy / 2) continue;
-    check_.accept(a, {doubt * std::max(runs_.distance(a, c), runs_.distance(a, b)), &c});
-    check_.accept(b, {doubt * std::max(inner, runs_.distance(b, c)), &c});
-    check_.accept(c, {doubt * inner, &b, true});
+    // Errors that do not fall as the tolerances may be larger than what parts the runs.
+    const double bound = together ? doubt : rules_.doubt * doubt;
+    check_.accept(a, {bound * std::max(runs_.distance(a, c), runs_.distance(a, b)), &c});
+    check_.accept(b, {bound * std::max(inner, runs_.distance(b, c)), &c});
+    check_.accept(c, {bound * inner, &b, true});
     if (check_.error_of(c) > rules_.part_of_judge * accuracy) continue;
     check_.condition(c, accuracy);
     if (check_.is_hopeless(accuracy)) return false;
