@@ -132,6 +132,28 @@ BOOST_AUTO_TEST_CASE(a_pair_of_runs_shows_what_rounding_does) {
   BOOST_TEST(runs.all().size() == 2u);
 }
 
+BOOST_AUTO_TEST_CASE(a_judge_that_another_contradicts_is_none) {
+  const Scene scene = drawn("orbit");
+  const ReducedScene model(scene);
+  Runs runs(model, 2, AccuracyOf::positions, seconds, nullptr, Rules{});
+  const Method& verlet = *find_method("verlet");
+  const Trial &coarse = runs.make(verlet, 1e-2), &fine = runs.make(verlet, 5e-3);
+  runs.measure_by(fine);
+  const double apart = runs.distance(coarse, fine);
+  BOOST_TEST_REQUIRE(apart > 1e-8);
+  Check check(runs);
+  // Both bounds are possible: the runs are no farther apart than twice their sum.
+  check.accept(coarse, {0.3 * apart});
+  check.accept(fine, {0.3 * apart});
+  BOOST_TEST(check.bound(coarse)->error < 0.4 * apart);
+  // A bound that is too small does not stay.
+  Check other(runs);
+  other.accept(coarse, {0.1 * apart});
+  other.accept(fine, {0.1 * apart});
+  BOOST_TEST((other.judge() == &fine));
+  BOOST_TEST(other.bound(coarse)->error > apart);
+}
+
 BOOST_AUTO_TEST_CASE(forces_are_counted_as_if_all_parts_were_one) {
   Scene scene = drawn("pendulum");
   const auto forces = [&] {
