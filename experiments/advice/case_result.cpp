@@ -57,9 +57,8 @@ Point best_in_hindsight(const ReducedScene& scene, double until, double accuracy
   std::vector<Point> enough;
   for (const Method* method : in_order_of_promise(scene.system())) {
     if (seconds_since(begin) > patience) break;
-    const auto see = [](const Point&) {};
-    const std::vector<Point> points =
-        measure_ladder(*method, scene, until, reference, effort, see, is_enough);
+    const std::vector<Point> points = measure_ladder(
+        *method, scene, until, reference, effort, [](const Point&) {}, is_enough);
     // Luck does not count.
     const auto all_judged = judged_together(points, reference, judge_of(reference));
     for (std::size_t i = 0; i < points.size(); ++i) {

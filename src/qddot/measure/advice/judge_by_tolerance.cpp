@@ -137,9 +137,7 @@ bool Search::judge_in_closed_form(double accuracy) {
     for (const Method* method : with_error_control(false, tolerance)) {
       const Trial& other =
           runs_.make(*method, tolerance, {.forces = runs_.forces_within(rules_.much_work)});
-      check_.set(Conditioning{});
       if (other.reached_end() && check_.condition_symmetry(other, accuracy)) break;
-      check_.set({});
     }
   }
   return error <= accuracy;
