@@ -37,12 +37,12 @@ Seen run(const Method& method, double value, const ReducedScene& model, const Tr
   return seen;
 }
 
-// The relative error of the run; infinite if it did not reach the end.
+// The relative error of the run, whose energy [J] should be this one; infinite if it did not reach
+// the end.
 double error_of(const Seen& seen, const ReducedScene& model, const TrueMotion& truth,
-                const Scales& scales, AccuracyOf of) {
+                const Scales& scales, AccuracyOf of, double energy = 0) {
   if (!seen.reached_end) return std::numeric_limits<double>::infinity();
   double error = 0;
-  const double energy = of == AccuracyOf::energy ? model.energy(model.initial()) : 0;
   for (std::size_t i = of == AccuracyOf::positions ? seen.path.size() - 1 : 0; i < seen.path.size();
        ++i) {
     const double here = of == AccuracyOf::energy
@@ -84,24 +84,25 @@ Scales scales_of(const ReducedScene& model, const Seen& fine, const TrueMotion& 
   return scales;
 }
 
-// The energy [J] that the true motion seems to gain or lose if its states are kept, and their
-// energy computed, in double precision.
-double energy_of_rounding(const HardCase& hard, const TrueMotion& truth) {
-  const ReducedScene drawn = hard.as_drawn();
-  const auto energy = [&](const std::vector<Node>& nodes) {
-    State state = drawn.initial();
-    Index at = 0;
-    for (const Node& node : nodes) {
-      if (node.pinned) continue;
-      state.q.segment(at, drawn.dimension()) = node.position.head(drawn.dimension());
-      state.v.segment(at, drawn.dimension()) = node.velocity.head(drawn.dimension());
-      at += drawn.dimension();
-    }
-    return drawn.energy(state);
-  };
-  const double first = energy(truth.path.front());
+// The energy [J] of these states of all nodes, computed in double precision.
+double energy_of(const ReducedScene& drawn, const std::vector<Node>& nodes) {
+  State state = drawn.initial();
+  Index at = 0;
+  for (const Node& node : nodes) {
+    if (node.pinned) continue;
+    state.q.segment(at, drawn.dimension()) = node.position.head(drawn.dimension());
+    state.v.segment(at, drawn.dimension()) = node.velocity.head(drawn.dimension());
+    at += drawn.dimension();
+  }
+  return drawn.energy(state);
+}
+
+// The energy that the true motion seems to gain or lose if its states are kept in double precision.
+double energy_of_rounding(const ReducedScene& drawn, const TrueMotion& truth) {
+  const double first = energy_of(drawn, truth.path.front());
   double largest = 0;
-  for (const auto& nodes : truth.path) largest = std::max(largest, std::abs(energy(nodes) - first));
+  for (const auto& nodes : truth.path)
+    largest = std::max(largest, std::abs(energy_of(drawn, nodes) - first));
   return largest;
 }
 
@@ -120,7 +121,11 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
   Seen fine;
   if (!model_.system().has_massless()) fine = run(*find_method("dprkn12"), 1e-13, model_, truth_);
   scales_ = scales_of(model_, fine, truth_, hard.scene);
-  fine_error_ = judged_advice::error_of(fine, model_, truth_, scales_, hard.of);
+  const ReducedScene drawn = hard.as_drawn();
+  // Massless nodes may start out of balance and lose energy at once.
+  energy_ = model_.system().has_massless() ? energy_of(drawn, truth_.path.front())
+                                           : model_.energy(model_.initial());
+  fine_error_ = judged_advice::error_of(fine, model_, truth_, scales_, hard.of, energy_);
   switch (hard.of) {
     case AccuracyOf::positions:
       conditioning_ = truth_.conditioning_at_end / least_scale(scales_);
@@ -129,7 +134,7 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
       conditioning_ = truth_.conditioning / least_scale(scales_);
       break;
     case AccuracyOf::energy:
-      conditioning_ = (truth_.energy_conditioning + energy_of_rounding(hard, truth_)) /
+      conditioning_ = (truth_.energy_conditioning + energy_of_rounding(drawn, truth_)) /
                       (scales_.kinetic > 0 ? scales_.kinetic : 1);
   }
 }
@@ -137,7 +142,7 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
 double JudgedMotion::error_of(const Method& method, double value) const {
   if (model_.system().size() == 0) return 0;
   return judged_advice::error_of(run(method, value, model_, truth_), model_, truth_, scales_,
-                                 hard_.of);
+                                 hard_.of, energy_);
 }
 
 }  // namespace qddot::judged_advice

@@ -34,6 +34,7 @@ class JudgedMotion {
   ReducedScene model_;
   TrueMotion truth_;
   Scales scales_;
+  double energy_ = 0;  // [J], of the true motion
   double conditioning_ = 0, fine_error_ = 0;
 };
 

@@ -82,11 +82,10 @@ double Check::by_chance(const Trial& judge, double apart) const {
   return std::max(rules.doubt * apart, own);
 }
 
-void Check::condition_by_pair(const Trial& first, double between, double accuracy) {
-  const Rules& rules = runs_.rules();
-  const double share = rules.doubt_of_two() * between;
-  if (share > rules.part_of_judge * accuracy) return condition(first, accuracy);
-  conditioning_ = Conditioning{.effect = between, .share = share};
+void Check::condition_by_pair(const Trial& known, double between, const Trial& first,
+                              double accuracy) {
+  conditioning_ = Conditioning{.effect = between, .share = runs_.rules().doubt_of_two() * between};
+  if (!is_known(known, accuracy)) return condition(first, accuracy);
   condition_symmetry(first, accuracy);
 }
 
@@ -162,27 +161,32 @@ std::optional<Bound> Check::bound(const Trial& trial) const {
   if (!trial.reached_end() || judges_.empty()) return {};
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
-  const double rounding =
-      rules.doubt_of_two() * machine_epsilon + (conditioning_ ? conditioning_->share : 0);
+  const double least = rules.doubt_of_two() * machine_epsilon,
+               share = conditioning_ ? conditioning_->share : 0;
   if (stage.of() == AccuracyOf::energy) {
-    // The largest error between the looks and steps may be larger than at them.
-    const bool interpolates = trial.method->is(Trait::interpolates);
+    // The largest error between the looks and steps may be larger than at them. Steps that end at
+    // looks, as a tolerance bounds them, end elsewhere with others.
+    const bool is_bounded = trial.method->knob == Knob::rtol;
     const double seen =
-        (interpolates ? rules.doubt_of_two() : rules.doubt) * stage.energy_error(trial);
+        (is_bounded ? rules.doubt_of_two() : rules.doubt) * stage.energy_error(trial);
+    const bool interpolates = trial.method->is(Trait::interpolates);
     const double between = interpolates ? std::max(seen, between_steps(trial)) : seen;
-    return Bound{between + rounding};
+    return Bound{between + least + share};
   }
-  std::optional<Bound> least;
+  std::optional<Bound> best;
   for (const auto& [by, own] : judges_) {
     const bool is_itself = by == &trial;
-    // A judge's own error may be a little larger than its bound, beside a distance that is larger.
+    // Both count twice or more, so that the larger holds them, as fixed steps stay the same. A
+    // judge's own error may be a little larger than its bound, beside a distance that is larger.
+    const double judged =
+        by->method->knob == Knob::rtol ? own.error + share : std::max(own.error, share);
     const double error =
-        own.error + rounding + between_steps(trial) +
+        judged + least + between_steps(trial) +
         (is_itself ? 0 : between_steps(*by) + (1 + rules.small) * runs_.distance(trial, *by));
-    if (least && least->error <= error) continue;
-    least = Bound{error, is_itself ? own.by : by, is_itself && own.by_coarser};
+    if (best && best->error <= error) continue;
+    best = Bound{error, is_itself ? own.by : by, is_itself && own.by_coarser};
   }
-  return least;
+  return best;
 }
 
 bool Check::is_known(const Trial& trial, double accuracy) const {

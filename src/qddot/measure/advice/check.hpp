@@ -47,9 +47,9 @@ class Check {
   // Repeats a run from starts one rounding away, also out of the symmetry of the reductions. The
   // accuracy says how well the effect must be known. Nothing is known afterwards if a run fails.
   void condition(const Trial& judge, double accuracy);
-  // The same by a pair of runs that are `between` apart, as the second is pushed: that is at least
-  // the effect. If it is too much to say so, the first run of the motion is repeated.
-  void condition_by_pair(const Trial& first, double between, double accuracy);
+  // The same by a pair of runs that are `between` apart, as one is pushed: that is at least the
+  // effect. If a run that is known is not so beside it, the first run of the motion is repeated.
+  void condition_by_pair(const Trial& known, double between, const Trial& first, double accuracy);
   // Repeats it out of the symmetry alone. False if that fails, and nothing is known afterwards.
   bool condition_symmetry(const Trial& judge, double accuracy);
   void set(const std::optional<Conditioning>& conditioning) { conditioning_ = conditioning; }

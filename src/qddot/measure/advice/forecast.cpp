@@ -145,7 +145,7 @@ double Forecast::error_seen(const Trial& trial, const Trial& by) const {
 
 void Forecast::learn(const Check& check) {
   for (const Trial& trial : runs_.all()) {
-    if (trial.reached_end() || trial.method->knob != Knob::step_size) continue;
+    if (runs_.is_sound(trial) || trial.method->knob != Knob::step_size) continue;
     // Longer steps are expected to fail, too, and all to take too long where one did.
     const double least = trial.summary.outcome == Outcome::over_budget ? 0 : trial.value;
     const auto [place, is_new] = failed_.try_emplace(trial.method, least);
@@ -156,14 +156,14 @@ void Forecast::learn(const Check& check) {
   if (!by) {
     for (const Trial& trial : runs_.all()) {
       const double expected = error(*trial.method, trial.value);
-      if (!trial.reached_end() || !(expected < least)) continue;
+      if (!runs_.is_sound(trial) || !(expected < least)) continue;
       least = expected;
       by = &trial;
     }
   }
   if (!by) return;
   for (const Trial& trial : runs_.all()) {
-    if (!trial.reached_end() || trial.is_pushed || &trial == by) continue;
+    if (!runs_.is_sound(trial) || trial.is_pushed || &trial == by) continue;
     // An error near that of the other run says nothing.
     const double seen = error_seen(trial, *by);
     if (seen > rules_.doubt * least) learn(trial, seen);

@@ -52,7 +52,7 @@ const Trial* Search::survey() {
   for (int i = 0; i < static_cast<int>(rules_.rounds);
        ++i, steps = std::ceil(rules_.doubt * steps)) {
     const Trial& trial = runs_.make(method, until_ / steps);
-    if (trial.reached_end() && trial.summary.energy_growth < rules_.doubt) return &trial;
+    if (runs_.is_sound(trial)) return &trial;
     const Outcome outcome = trial.summary.outcome;
     if (outcome == Outcome::over_budget || outcome == Outcome::went_slack) break;
   }
@@ -94,6 +94,33 @@ std::optional<Candidate> Search::explicit_candidate(double error, const Method* 
   return best;
 }
 
+// Takes the finer run of a pair as a judge, and the coarser one, if the finer one's error is
+// expected to be at most this share of the other.
+void Search::accept_pair(const Trial& coarse, const Trial& fine, double share) {
+  const double between = runs_.distance_on_the_way(coarse, fine);
+  // The energy that a run gains bounds its error from below, as the motion keeps it.
+  const double kinetic = runs_.stage().scales().kinetic;
+  const double gained = kinetic > 0 ? fine.energy_gain / kinetic : 0;
+  check_.accept(coarse, {rules_.doubt * between / (1 - share), &fine});
+  // Errors may not fall by their order. The finer one's is then still at most half of the other.
+  check_.accept(fine, {std::max(between, rules_.small * gained), &coarse, true});
+}
+
+// Whether the first run has the accuracy, by a finer one that was to be checked itself.
+bool Search::is_first_enough(const Trial& first, const Trial& finer, double accuracy) {
+  runs_.measure_by(finer);
+  const double between = runs_.distance_on_the_way(first, finer);
+  const double share = forecast_->error(*finer.method, finer.value) / between;
+  if (!(share <= 1 / rules_.finer) ||
+      rules_.doubt * between / (1 - share) > rules_.clearly_below * accuracy)
+    return false;
+  accept_pair(first, finer, share);
+  check_.condition(first, accuracy);
+  if (check_.conditioning() && check_.is_known(first, accuracy)) return true;
+  check_.set({});
+  return false;
+}
+
 // A run chosen to have a part of the accuracy as its error, and a run that checks it; the check
 // begins one rounding away. Each distance corrects the forecast for the next pair.
 bool Search::judge_by_forecast(double accuracy) {
@@ -110,33 +137,34 @@ bool Search::judge_by_forecast(double accuracy) {
   std::optional<double> effect_on_first;
   for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
        ++round) {
-    const double unseen = round == 0 ? 1 : rules_.doubt_of_two();
+    const double unseen = round == 0 ? 1 : rules_.doubt;
     double error = forecast_->error(*tried->method, tried->value);
     if (!(error <= aim)) {
       const auto next = explicit_candidate(aim, nullptr, unseen);
       if (!next) return false;
       const Trial& trial = runs_.make(*next->method, next->value);
       forecast_->learn(check_);
-      if (!trial.reached_end()) continue;
+      if (!runs_.is_sound(trial)) continue;
       tried = &trial;
       error = forecast_->error(*trial.method, trial.value);
+      if (is_first_enough(*first, trial, accuracy)) return true;
     }
-    const auto chosen = explicit_candidate(error / rules_.finer, tried->method, unseen);
+    const auto chosen =
+        explicit_candidate(error / rules_.finer, tried->method, std::sqrt(rules_.doubt));
     if (!chosen) return false;
-    const Trial* pushed = runs_.find(*chosen->method, chosen->value, true);
-    if (!pushed) pushed = &runs_.make_pushed(*chosen->method, chosen->value);
-    const Trial& checked = *pushed;
+    // One of the two is pushed.
+    const bool is_pushed = !tried->is_pushed;
+    const Trial* made = runs_.find(*chosen->method, chosen->value, is_pushed);
+    if (!made && is_pushed) made = &runs_.make_pushed(*chosen->method, chosen->value);
+    if (!made) made = &runs_.make(*chosen->method, chosen->value);
+    const Trial& checked = *made;
+    const Trial& unpushed = is_pushed ? *tried : checked;
     forecast_->learn(check_);
-    if (!checked.reached_end()) continue;
+    if (!runs_.is_sound(checked)) continue;
     runs_.measure_by(checked);
     const double between = runs_.distance_on_the_way(*tried, checked);
     const double share = std::max(1 / rules_.finer, chosen->error / error);
-    // The energy that a run gains bounds its error from below, as the motion keeps it.
-    const double kinetic = runs_.stage().scales().kinetic;
-    const double gained = kinetic > 0 ? checked.energy_gain / kinetic : 0;
-    check_.accept(*tried, {rules_.doubt * between / (1 - share), &checked});
-    // Errors may not fall by their order. The check's is then still at most half of the other one.
-    check_.accept(checked, {std::max(between, rules_.small * gained), tried, true});
+    accept_pair(*tried, checked, share);
     forecast_->learn(check_);
     forecast_->learn(*tried, between / (1 - share));
     // The check's own bound may do where that of the run does not.
@@ -144,16 +172,16 @@ bool Search::judge_by_forecast(double accuracy) {
     double pushed_by = std::max(between, runs_.distance(*tried, checked));
     if (!check_.is_known(*tried, accuracy) &&
         check_.error_of(checked) <= rules_.clearly_below * accuracy) {
-      known = &runs_.make(*checked.method, checked.value);
-      pushed_by = runs_.distance(*known, checked);
+      known = is_pushed ? &runs_.make(*checked.method, checked.value) : &checked;
+      if (is_pushed) pushed_by = runs_.distance(*known, checked);
     }
     if (check_.is_known(*known, accuracy)) {
       // The first run tells cheaply what rounding does; one that resolves the motion, if need be.
       const auto is_known_beside_rounding = [&] {
         return check_.conditioning() && check_.is_known(*known, accuracy);
       };
-      check_.condition_by_pair(*first, pushed_by, accuracy);
-      if (!is_known_beside_rounding() && tried != first) check_.condition(*tried, accuracy);
+      check_.condition_by_pair(*known, pushed_by, *first, accuracy);
+      if (!is_known_beside_rounding() && known != first) check_.condition(*known, accuracy);
       return is_known_beside_rounding();
     }
     // Runs that should be near each other and are not: rounding may be the reason. The first run
@@ -165,12 +193,16 @@ bool Search::judge_by_forecast(double accuracy) {
         effect_on_first = check_.conditioning() ? check_.conditioning()->worst() : INFINITY;
         check_.set({});
       }
-      // Errors so much larger than the forecast show no order.
-      if (error < rules_.small * rules_.small * between) return false;
     }
+    // Errors so much larger than the forecast show no order: at first, and once it has learned.
+    const double unforeseen = round == 0 ? rules_.small * rules_.small : rules_.small;
+    if (between > (round == 0 ? rules_.small : accuracy) && error < unforeseen * between)
+      return false;
     const bool is_calm = effect_on_first && *effect_on_first <= rules_.small * accuracy;
-    if (round > 0 && !is_calm && !check_.conditioning()) check_.condition(*tried, accuracy);
+    if (round > 0 && !is_calm && !check_.conditioning()) check_.condition(unpushed, accuracy);
     if (check_.is_hopeless(accuracy)) return false;
+    // The check may be the run that a finer one checks.
+    if (forecast_->error(*checked.method, checked.value) <= aim) tried = &checked;
   }
   return false;
 }

@@ -42,8 +42,11 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
       check_.set(Conditioning{.effect = stage.rounding(), .share = stage.rounding()});
       return false;
     }
-    if (!runs.empty() && runs_.distance_on_the_way(*runs.back(), trial) == 0)
-      runs.pop_back();  // the same steps, which judge nothing
+    if (!runs.empty() && runs_.distance_on_the_way(*runs.back(), trial) == 0) {
+      // The same steps judge nothing; more than the tolerance bounds them.
+      runs.pop_back();
+      rtol *= rules_.small * rules_.small;
+    }
     runs.push_back(&trial);
     if (runs.size() < 3) continue;
     const Trial &c = *runs.back(), &b = *runs[runs.size() - 2], &a = *runs[runs.size() - 3];

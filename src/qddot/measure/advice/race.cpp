@@ -76,11 +76,14 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double acc
 
 const Trial* Search::race(const Trial* answer, double accuracy) {
   if (answer->method->order == 0 || !check_.has_judge() || runs_.stage().rests()) return answer;
-  const double end =
-      std::max(rules_.unnoticed, runs_.seconds() + rules_.part_of_answer * answer->seconds);
+  const double end = runs_.seconds() + std::max(rules_.unnoticed - answer->seconds,
+                                                rules_.part_of_answer * answer->seconds);
   if (!may_forecast(*answer)) return answer;
   forecast_->learn(check_);
-  const double aim = (1 - rules_.doubt * rules_.part_of_judge) * accuracy;
+  const double rounding = check_.conditioning() ? check_.conditioning()->share : 0;
+  const double aim = std::clamp(rules_.clearly_below - rounding / accuracy, rules_.small,
+                                1 - rules_.doubt * rules_.part_of_judge) *
+                     accuracy;
   while (runs_.seconds_left() > 0) {
     const double left = end - runs_.seconds();
     if (left <= 0) break;

@@ -27,6 +27,9 @@ class Runs {
   // Looks also within the steps of that run, which is none of these. Call before the first one.
   void look_within_steps(const Method& method, double value);
 
+  // As Stage. Call before the first run.
+  void begin_in_balance(const Method& method) { stage_.begin_in_balance(method); }
+
   // Measures all distances by the scales of the trial, which reached the end.
   void measure_by(const Trial& trial);
   // The distance of two runs that reached the end, as Stage says.
@@ -44,6 +47,10 @@ class Runs {
   // The work of evaluating f once, and how often a run did: the mean over its parts.
   double work_of_force() const;
   double forces(const Trial& trial) const;
+  // Whether the run reached the end with no more energy than an accurate one may gain.
+  bool is_sound(const Trial& trial) const {
+    return trial.reached_end() && trial.summary.energy_growth < rules().doubt;
+  }
   // The number of forces that are so much work.
   std::int64_t forces_within(double work) const;
   double seconds() const { return seconds_since(begin_); }

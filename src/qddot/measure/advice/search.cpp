@@ -37,7 +37,10 @@ void Search::try_once(const Method& method, double value, double seconds) {
 bool Search::judge(double accuracy) {
   if (runs_.all().empty() && runs_.stage().of() != AccuracyOf::positions) {
     const auto coarse = with_error_control(system_.has_massless(), 1);
-    if (!coarse.empty()) runs_.look_within_steps(*coarse.front(), rules_.largest_tolerance);
+    if (!coarse.empty()) {
+      if (system_.has_massless()) runs_.begin_in_balance(*coarse.front());
+      runs_.look_within_steps(*coarse.front(), rules_.largest_tolerance);
+    }
   }
   if (judge_in_closed_form(accuracy)) return true;
   if (runs_.stage().of() == AccuracyOf::energy) return judge_energy(accuracy);

@@ -56,6 +56,8 @@ class Search {
   bool judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces);
   bool judge_at_last(double accuracy, bool implicitly);
   bool judge_by_forecast(double accuracy);
+  void accept_pair(const Trial& coarse, const Trial& fine, double share);
+  bool is_first_enough(const Trial& first, const Trial& finer, double accuracy);
   bool judge_energy(double accuracy);
 
   std::vector<const Method*> with_error_control(bool implicitly, double accuracy) const;

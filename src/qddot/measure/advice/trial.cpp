@@ -48,7 +48,7 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
   const auto integrator = make_integrator(method, model.system(), options);
   State state = start;
   const Deadline deadline(limits.seconds);
-  const double energy = model.energy(start);
+  const double energy = model.energy(start) + energy_lost_at_start_;
   const auto see_energy = [&](const State& seen) {
     const double gain = model.energy(seen) - energy;
     trial.energy_gain = std::max(trial.energy_gain, gain);
@@ -61,6 +61,16 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
   for (const State& seen : trial.path) see_energy(seen);
   if (!trial.reached_end()) stop_if_interrupted();
   return trial;
+}
+
+void Stage::begin_in_balance(const Method& method) {
+  State state = model_.initial();
+  const double energy = model_.energy(state);
+  const auto integrator =
+      make_integrator(method, model_.system(), options_for(method, least_accuracy, model_));
+  const double at_once = until_ * std::sqrt(machine_epsilon);
+  if (integrator->advance(state, at_once).outcome == Outcome::reached_end)
+    energy_lost_at_start_ = model_.energy(state) - energy;
 }
 
 void Stage::look_within_steps(const Method& method, double value, const Limits& limits) {

@@ -61,6 +61,10 @@ class Stage {
   // where a motion is fast, and where errors on the way may be largest.
   void look_within_steps(const Method& method, double value, const Limits& limits);
 
+  // Measures energies from where massless nodes are in balance. Those that start beside it go there
+  // at once, and the exact motion keeps the energy that is left. The method accepts such nodes.
+  void begin_in_balance(const Method& method);
+
   // Runs the method from the start to the end.
   Trial run(const Method& method, double value, const Limits& limits) const;
   // The same from a start that is pushed.
@@ -123,6 +127,7 @@ class Stage {
   std::vector<double> times_;
   Scales scales_;
   bool rests_ = false;
+  double energy_lost_at_start_ = 0;  // [J], at most zero
 };
 
 }  // namespace qddot::inline measure
