@@ -18,23 +18,27 @@ constexpr double apart_enough = 0.01;
 // A run of so much work beside a hard motion is lost in rounding.
 constexpr std::int64_t most_forces = 1000000;
 
-// A run of the method seen at the times of the true motion.
+// A run of the method seen at some times.
 struct Seen {
   bool reached_end = false;
   std::vector<State> path{};
 };
-Seen run(const Method& method, double value, const ReducedScene& model, const TrueMotion& truth) {
+Seen run(const Method& method, double value, const ReducedScene& model,
+         const std::vector<double>& times) {
   Seen seen;
   Options options = options_for(method, value, model);
   options.most_forces = most_forces;
   const auto integrator = make_integrator(method, model.system(), options);
   State state = model.initial();
   const Deadline deadline(longest_repetition);
-  const Observer observer{truth.times, [&](const State& s) { seen.path.push_back(s); }};
-  seen.reached_end =
-      integrator->advance(state, truth.times.back(), observer, deadline.token()).outcome ==
-      Outcome::reached_end;
+  const Observer observer{times, [&](const State& s) { seen.path.push_back(s); }};
+  seen.reached_end = integrator->advance(state, times.back(), observer, deadline.token()).outcome ==
+                     Outcome::reached_end;
   return seen;
+}
+
+Seen fine_run(const ReducedScene& model, const std::vector<double>& times) {
+  return run(*find_method("dprkn12"), 1e-13, model, times);
 }
 
 // The relative error of the run, whose energy [J] should be this one; infinite if it did not reach
@@ -119,7 +123,7 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
     : hard_(hard), model_(hard.model()), truth_(true_motion(hard)) {
   if (!truth_.is_known()) return;
   Seen fine;
-  if (!model_.system().has_massless()) fine = run(*find_method("dprkn12"), 1e-13, model_, truth_);
+  if (!model_.system().has_massless()) fine = fine_run(model_, truth_.times);
   scales_ = scales_of(model_, fine, truth_, hard.scene);
   const ReducedScene drawn = hard.as_drawn();
   // Massless nodes may start out of balance and lose energy at once.
@@ -139,9 +143,13 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
   }
 }
 
+std::vector<State> JudgedMotion::fine_path(const std::vector<double>& times) const {
+  return fine_run(model_, times).path;
+}
+
 double JudgedMotion::error_of(const Method& method, double value) const {
   if (model_.system().size() == 0) return 0;
-  return judged_advice::error_of(run(method, value, model_, truth_), model_, truth_, scales_,
+  return judged_advice::error_of(run(method, value, model_, truth_.times), model_, truth_, scales_,
                                  hard_.of, energy_);
 }
 

@@ -25,6 +25,8 @@ class JudgedMotion {
   bool is_well_posed() const { return conditioning_ <= well_posed * hard_.accuracy; }
   // The error of dprkn12 at its finest tolerance; infinite for a system with massless nodes.
   double fine_error() const { return fine_error_; }
+  // The states of that run at other times, as far as it goes; for systems without massless nodes.
+  std::vector<State> fine_path(const std::vector<double>& times) const;
   // The error of a run that is asked for, at the times of the true motion; infinite if it did not
   // reach the end, zero if nothing is left to be integrated.
   double error_of(const Method& method, double value) const;
