@@ -23,6 +23,10 @@
 //
 // The options --hard --rules ask each hard motion again with each rule of the search halved and
 // doubled (see rules.hpp). rules.csv says what becomes of the bars, the refusals and the forces.
+//
+// The options --hard --samples run each hard motion with all methods of error control, and measure
+// the states that they give between their steps (see sample_errors.hpp). samples.csv has each run,
+// samples_by_method.csv sums them up.
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,6 +34,7 @@
 #include "experiments/advice/case_result.hpp"
 #include "experiments/advice/hard_worth.hpp"
 #include "experiments/advice/rule_effects.hpp"
+#include "experiments/advice/sample_errors.hpp"
 #include "experiments/advice/worth.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
@@ -56,13 +61,14 @@ int main(int argc, char** argv) {
   auto scenes =
       p.flag("--scenes", "with --hard, write the scene of each case, and print a line for each");
   auto rules = p.flag("--rules", "with --hard, change each rule of the search by a factor of two");
+  auto samples = p.flag("--samples", "with --hard, measure states between the steps of runs");
   p.out("the folder for cases.csv and worth.csv");
 
   // Judges the cases of these numbers, piece by piece, and tells the results.
   const auto judge = [&]<class Result>(RowTable<Result>& table, const auto& result_of_number,
                                        const auto& tell) {
     std::vector<std::uint64_t> numbers;
-    Shares shares{.chosen_by = {"--cases", "--first", "--hard", "--rules"}};
+    Shares shares{.chosen_by = {"--cases", "--first", "--hard", "--rules", "--samples"}};
     for (int i = 0; i < cases; ++i) {
       numbers.push_back(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i));
       shares.names.push_back(std::to_string(numbers.back()));
@@ -154,8 +160,52 @@ int main(int argc, char** argv) {
           }
         });
   };
+  const auto judge_samples = [&] {
+    const Columns<SampledCase> case_columns = {{"case", &SampledCase::name},
+                                               {"left_out", &SampledCase::left_out},
+                                               {"conditioning", &SampledCase::conditioning}};
+    using M = SampledMethod;
+    auto& runs = p.table<SampledRun>("samples.csv", sample_columns());
+    auto& sums = p.table<M>("samples_by_method.csv", {{"method", &M::method},
+                                                      {"runs", &M::runs},
+                                                      {"ended_early", &M::ended_early},
+                                                      {"largest", &M::largest},
+                                                      {"median", &M::median},
+                                                      {"share", &M::share},
+                                                      {"plain_largest", &M::plain_largest},
+                                                      {"plain_median", &M::plain_median},
+                                                      {"plain_share", &M::plain_share}});
+    return judge(
+        p.table("sampled_cases.csv", case_columns),
+        [&](std::uint64_t number) { return sampled_case(hard_case(number)); },
+        [&](const std::vector<SampledCase>& results) {
+          for (const SampledCase& one : results) {
+            for (const SampledRun& run : one.runs) {
+              if (run.reached_end) runs.add(run);
+            }
+          }
+          fmt::print("{:<18} {:>6} {:>6} {:>9} {:>8} {:>9}   {}\n", "method", "runs", "ended",
+                     "largest", "median", "above 20", "plain: largest, median, above 20");
+          for (const M& sum : by_method(results)) {
+            sums.add(sum);
+            fmt::print(
+                "{:<18} {:>6} {:>6} {:>9.3g} {:>8.2g} {:>8.2f}%   {:>9.3g} {:>8.2g} {:>8.2f}%\n",
+                sum.method, sum.runs, sum.ended_early, sum.largest, sum.median, sum.share,
+                sum.plain_largest, sum.plain_median, sum.plain_share);
+          }
+        });
+  };
   return p.run(argc, argv, [&] {
-    if (rules && !hard) throw InvalidInput("--rules is given without --hard, which it belongs to");
-    return rules ? judge_rules() : hard ? judge_hard_cases() : judge_cases();
+    for (const auto& [is_given, option] :
+         {std::pair(bool(rules), "--rules"), {bool(samples), "--samples"}}) {
+      if (is_given && !hard)
+        throw InvalidInput(fmt::format("{} is given without --hard, which it belongs to", option));
+    }
+    if (rules && samples)
+      throw InvalidInput("--rules and --samples are given together: take one of them");
+    return samples ? judge_samples()
+           : rules ? judge_rules()
+           : hard  ? judge_hard_cases()
+                   : judge_cases();
   });
 }

@@ -375,3 +375,17 @@ class Advice(Programs):
         self.done(f"{said} --until {rows[1]['until'] / 2!r}")
         of = {row["of"] for row in table("out/hard_worth.csv", "of,figure,value,cases,meaning")}
         self.assertLessEqual({"all", "positions", "energy"}, of)
+
+    def test_the_study_measures_states_between_steps(self):
+        # A motion of two blocks, with its largest errors on the way.
+        ended = self.done("advice --hard --samples --cases 1 --first 500026 --out out")
+        self.assertEqual(len(table("out/sampled_cases.csv", "case,left_out,conditioning")), 1)
+        rows = table("out/samples.csv")
+        for row in rows:
+            self.assertLessEqual(row["ratio"], row["plain_ratio"])
+            self.assertLessEqual(row["ratio"], 20, row)
+        # Ends of steps tell interpolation from a motion whose error is largest on its way.
+        self.assertGreater(max(row["plain_ratio"] for row in rows), 20)
+        sums = table("out/samples_by_method.csv")
+        self.assertEqual(sum(row["runs"] for row in sums), len(rows))
+        self.holds(ended.stdout, *(row["method"] for row in sums))

@@ -51,6 +51,8 @@ scaling {--step-size,--point-limit,--memory-limit,--least-nodes,--most-nodes} 0 
 simulate --scene cloth --time-limit 0 | --time-limit 0 is not allowed | greater
 {work_precision --scene orbit,stock_sundials --scene orbit,crossover --ratios 1,local_global} --repeats {0,1001} OUT | --repeats {1} | from 1 to 1000
 advise --scene orbit --until 1 OUT | --accuracy is missing
+advice {--rules,--samples} OUT | {} is given without --hard
+advice --hard --rules --samples OUT | --rules | --samples
 {advise OUT,simulate --final f.csv} --scene orbit --until 1 --accuracy {0,nan,1e-40,10} | --accuracy | from 1e-14 | below 1
 simulate --scene orbit --until 1 --accuracy 1e-3 --method verlet --final f.csv | --method | --accuracy
 simulate --scene orbit --until 1 --accuracy 1e-3 --rtol 1e-3 --final f.csv | --rtol

@@ -3,7 +3,9 @@
 #include <boost/test/unit_test.hpp>
 
 #include "experiments/advice/rule_effects.hpp"
+#include "experiments/advice/sample_errors.hpp"
 #include "experiments/advice/worth.hpp"
+#include "qddot/integrators/registry.hpp"
 
 BOOST_AUTO_TEST_SUITE(worth)
 
@@ -65,6 +67,32 @@ BOOST_AUTO_TEST_CASE(a_changed_rule_is_compared_with_the_rules_as_they_are) {
   BOOST_TEST(std::abs(effects[1].refused - 100.0 / 3) < 1e-12);  // rounding of a quotient
   BOOST_TEST(effects[1].forces == 0.5);
   BOOST_TEST(effects[2].forces == 1.0);
+}
+
+BOOST_AUTO_TEST_CASE(samples_are_summed_up_by_method) {
+  using judged_advice::SampledCase;
+  using judged_advice::SampledRun;
+  const std::string one = methods()[1].name, other = methods()[0].name;
+  const auto run = [](const std::string& method, double ratio) {
+    return SampledRun{
+        .method = method, .reached_end = true, .ratio = ratio, .plain_ratio = 10 * ratio};
+  };
+  const std::vector<SampledCase> cases = {
+      {.runs = {run(one, 1), run(one, 3), run(other, 21), SampledRun{.method = other}}},
+      {.runs = {run(one, 2), run(one, 30)}}};
+  const auto sums = judged_advice::by_method(cases);
+  BOOST_TEST_REQUIRE(sums.size() == 2);
+  BOOST_TEST(sums[0].method == other);
+  BOOST_TEST(sums[0].runs == 1.0);
+  BOOST_TEST(sums[0].ended_early == 1.0);
+  BOOST_TEST(sums[0].share == 100.0);
+  BOOST_TEST(sums[1].method == one);
+  BOOST_TEST(sums[1].runs == 4.0);
+  BOOST_TEST(sums[1].largest == 30.0);
+  BOOST_TEST(sums[1].median == 2.0);
+  BOOST_TEST(sums[1].share == 25.0);
+  BOOST_TEST(sums[1].plain_largest == 300.0);
+  BOOST_TEST(sums[1].plain_share == 50.0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
