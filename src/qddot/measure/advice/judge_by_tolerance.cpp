@@ -124,9 +124,8 @@ bool Search::judge_in_closed_form(double accuracy) {
   const double w = runs_.bound_of_w(),
                phase = w * until_ * (slow > 0 ? std::max(1.0, w / slow) : 1);
   // Positions are sums of many numbers as large as coordinates.
-  const double error = stage.rests() ? 0
-                                     : rules_.doubt_of_two() * machine_epsilon * (1 + phase) +
-                                           rules_.rest * stage.rounding();
+  const double error = rules_.rest * stage.rounding() +
+                       (stage.rests() ? 0 : rules_.doubt_of_two() * machine_epsilon * (1 + phase));
   check_.accept(trial, {error});
   if (stage.of() == AccuracyOf::energy) {
     const double rounding = stage.energy_rounding(trial);
@@ -163,10 +162,13 @@ double Search::forces_of_implicit_step(int order) {
 std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
   const auto all = with_error_control(true, accuracy);
   if (!runs_.stage().has_springs() || all.empty()) return 0;
-  // Factors are not even analysed for less than some steps of the cheapest kind.
+  // Factors are not even analysed for less than some steps.
   const double most = rules_.short_cut * runs_.steps_of_verlet(),
                fewest = rules_.places * all.front()->order;
-  if (most < fewest * rules_.implicit_force) return 0;
+  // Factors have at least the entries of K.
+  const double entries = static_cast<double>(system_.stiffness_pattern().nonZeros());
+  if (most < fewest * (rules_.implicit_force + rules_.entry * entries / runs_.work_of_force()))
+    return 0;
   const double worth = most / forces_of_implicit_step(1);
   return worth > fewest ? static_cast<std::int64_t>(worth) : 0;
 }

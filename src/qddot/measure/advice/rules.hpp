@@ -51,8 +51,8 @@ struct Rules {
   // Corrections of a forecast by errors of methods whose orders differ by this say nothing.
   double unrelated_orders = 8;
 
-  // Runs that may be faster begin while a search has taken no more time [s] than nobody notices,
-  // and for a part of the answer's time.
+  // Once an answer is found, runs that may be faster begin for a part of its time, or until they
+  // and it have taken a time [s] that nobody notices.
   double unnoticed = 0.02, part_of_answer = 0.5;
   // Displacements of no more roundings of the positions than this are no motion, and closed forms
   // are as accurate as that.

@@ -79,9 +79,12 @@ void Stage::look_within_steps(const Method& method, double value, const Limits& 
            [&](const State& seen) { steps.push_back(seen.t); });
   std::mt19937 random(1);
   std::uniform_real_distribution<double> part(0, 1);
-  const std::size_t every = 1 + steps.size() / static_cast<std::size_t>(rules_.looks_at_a_path);
-  for (std::size_t i = every; i < steps.size(); i += every)
-    times_.push_back(steps[i - 1] + part(random) * (steps[i] - steps[i - 1]));
+  const auto looks = static_cast<std::size_t>(rules_.looks_at_a_path);
+  const std::size_t every = 1 + steps.size() / looks, in_each = 1 + looks / steps.size();
+  for (std::size_t i = every; i < steps.size(); i += every) {
+    for (std::size_t k = 0; k < in_each; ++k)
+      times_.push_back(steps[i - 1] + part(random) * (steps[i] - steps[i - 1]));
+  }
   std::ranges::sort(times_);
 }
 

@@ -57,7 +57,7 @@ class Stage {
   Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
         const Rules& rules);
 
-  // Looks also within the steps of a run, one random look in each of some of them: short steps are
+  // Looks also within the steps of a run, at random times in each of some of them: short steps are
   // where a motion is fast, and where errors on the way may be largest.
   void look_within_steps(const Method& method, double value, const Limits& limits);
 
