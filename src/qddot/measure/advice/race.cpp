@@ -13,16 +13,17 @@ namespace qddot::inline measure {
 std::optional<Candidate> Search::promised(double error, double seconds) const {
   for (const Candidate& c : forecast_->candidates(error)) {
     if (c.seconds > seconds) break;
-    if (!runs_.has(*c.method, c.value)) return c;
+    // More runs of one method teach nothing.
+    const auto made = std::ranges::count(runs_.all(), c.method, &Trial::method);
+    if (!runs_.has(*c.method, c.value) && made < 2 * rules_.rounds) return c;
   }
   return {};
 }
 
-// The first run of a method that has no forecast without one: of those that may be faster than the
-// answer, the one that evaluates the fewest forces.
-std::optional<Candidate> Search::first_of_method(const Trial& answer, double accuracy) {
+// The first run of a method that has no forecast without one: of those that evaluate fewer forces
+// than `fewest`, the cheapest.
+std::optional<Candidate> Search::first_of_method(double fewest, double accuracy) {
   std::optional<Candidate> cheapest;
-  double fewest = runs_.forces(answer);
   for (const Method& method : methods()) {
     const bool is_implicit = method.is(Trait::implicit);
     if (is_forecast_by_frequency(method) || method.order < 2 || !applies_to(method, system_) ||
@@ -89,7 +90,10 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
     if (left <= 0) break;
     const double seconds = std::min(left, rules_.clearly_below * answer->seconds);
     std::optional<Candidate> next = promised(aim, seconds);
-    const auto first = first_of_method(*answer, accuracy);
+    // Forces of methods that were not run may be cheaper. All may be tried where that takes no
+    // time.
+    const double fewest = runs_.forces(*answer) * std::max(1.0, left / answer->seconds);
+    const auto first = first_of_method(fewest, accuracy);
     if (!next || (first && first->forces < next->forces)) next = first;
     if (!next) break;
     constexpr double of_clock = 1e-5;  // [s], the time to see that it is over
