@@ -1,4 +1,5 @@
 // The bounds that a search knows of its runs; its results are tested in test_solve.cpp.
+#include <algorithm>
 #include <cmath>
 
 #include <boost/test/unit_test.hpp>
@@ -7,6 +8,8 @@
 #include "qddot/measure/advice/failure.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/motion/simulation.hpp"
+#include "qddot/measure/speed/measurement.hpp"
+#include "qddot/measure/stability/linear_step.hpp"
 #include "tests/measure/clocks.hpp"
 #include "tests/measure/drawn_scenes.hpp"
 
@@ -270,6 +273,74 @@ BOOST_AUTO_TEST_CASE(closed_forms_are_as_accurate_as_their_coordinates) {
   const double bound = search.check().bound(*found)->error;
   BOOST_TEST(error <= bound);
   BOOST_TEST(bound > 1.1e-16 / moved);  // one rounding of the position
+}
+
+// Errors of a formula that has become unstable say nothing of its order.
+BOOST_AUTO_TEST_CASE(a_run_whose_energy_grows_is_not_sound) {
+  const Scene scene = drawn("oscillator");
+  const ReducedScene model(scene);
+  Runs runs(model, 5, AccuracyOf::positions, seconds, nullptr, Rules{});
+  const Method& verlet = *find_method("verlet");
+  const double limit = linear_limit(verlet) / runs.bound_of_w();
+  // It grows within some steps beyond the limit, and by less than a half below it.
+  const Trial& unstable = runs.make(verlet, 1.02 * limit);
+  BOOST_TEST_REQUIRE(unstable.reached_end());
+  BOOST_TEST(!runs.is_sound(unstable));
+  const Trial& stable = runs.make(verlet, 0.2 * limit);
+  BOOST_TEST(runs.is_sound(stable));
+}
+
+// A massless node that starts beside its balance is there at once. The energy that this takes is no
+// error of a run.
+BOOST_AUTO_TEST_CASE(energies_of_massless_nodes_begin_in_balance) {
+  Scene scene{.name = "three cables", .dimension = 2};
+  scene.nodes = {{.position = {-1, 1, 0}, .pinned = true},
+                 {.position = {1, 1, 0}, .pinned = true},
+                 {.position = {0.2, 0.2, 0}, .mass = 0},
+                 {.position = {-0.1, -0.8, 0}, .velocity = {0.3, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 2}, {.stiffness = 400, .rest_length = 1.2}},
+                   {{1, 2}, {.stiffness = 300, .rest_length = 1.0}},
+                   {{2, 3}, {.stiffness = 500, .rest_length = 0.9}}};
+  scene.gravity[1] = -9.81;
+  const ReducedScene model(scene, Reductions().without(Reduction::massless));
+  const double until = 2, accuracy = 1e-5;
+  Search search(model, until, AccuracyOf::energy, seconds, &scene);
+  const Trial* found = search.find(accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  // The energy at the start is another one, by far more than the accuracy.
+  const double kinetic = search.runs().stage().scales().kinetic;
+  const double start = model.energy(model.initial()), end = model.energy(found->path.back());
+  BOOST_TEST(start - end > 0.01 * kinetic);
+  // Energies along the run are as near each other as its bound says, whatever their first one is.
+  double least = end, most = end;
+  for (const State& seen : found->path) {
+    least = std::min(least, model.energy(seen));
+    most = std::max(most, model.energy(seen));
+  }
+  BOOST_TEST(most - least <= 2 * search.check().bound(*found)->error * kinetic);
+}
+
+// All steps of a coarse run are looked into, and short runs as often as long ones.
+BOOST_AUTO_TEST_CASE(a_path_is_seen_within_its_steps) {
+  const Scene scene = drawn("orbit", {{"radius", 2.5}, {"speed", 0.1}});
+  const ReducedScene model(scene);
+  const Method& coarse = *find_method("dprkn8");
+  Runs runs(model, 3, AccuracyOf::path, seconds, nullptr, Rules{});
+  const std::size_t before = runs.stage().times().size();
+  runs.look_within_steps(coarse, 1e-2);
+  const std::vector<double>& times = runs.stage().times();
+  // As many again, up to one look in each step that is left over.
+  BOOST_TEST(times.size() >= 2 * before - 50);
+  const auto integrator = make_integrator(coarse, model.system(), options_for(coarse, 1e-2, model));
+  State state = model.initial();
+  std::vector<double> ends{0};
+  integrator->advance(state, 3, {{}, {}, [&](const State& seen) { ends.push_back(seen.t); }});
+  BOOST_TEST_REQUIRE(ends.size() < before);
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    const auto looks =
+        std::ranges::count_if(times, [&](double t) { return t > ends[i - 1] && t < ends[i]; });
+    BOOST_TEST(looks >= static_cast<std::ptrdiff_t>(before / ends.size()));
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
