@@ -5,12 +5,23 @@
 #include "experiments/advice/path_errors.hpp"
 #include "experiments/advice/worth.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::judged_advice {
 namespace {
 
 constexpr double tolerances[] = {1e-3, 1e-4, 1e-6, 1e-8};
 constexpr double far_above = 20;
+
+// The tolerance of a position, rtol (|q| + length) as in AdaptiveStep, relative to the motion.
+// Where a motion is small beside its scene, it is larger than rtol.
+double relative_tolerance(const Method& method, double rtol, const JudgedMotion& motion) {
+  const ReducedScene& model = motion.model();
+  const double largest = model.initial().q.lpNorm<Eigen::Infinity>(),
+               length = options_for(method, rtol, model).length,
+               displacement = motion.scales().displacement;
+  return rtol * (displacement > 0 ? std::max(1.0, (largest + length) / displacement) : 1);
+}
 
 SampledRun sampled_run(const Method& method, double value, const JudgedMotion& motion) {
   SampledRun run{.method = method.name, .value = value};
@@ -21,14 +32,15 @@ SampledRun sampled_run(const Method& method, double value, const JudgedMotion& m
   const auto at_steps =
       method.is(Trait::interpolates) ? errors_at_steps(method, value, motion) : samples;
   run.end_error = samples.back();
-  const double least = std::max(run.end_error, value);
+  const double least = std::max(run.end_error, value),
+               tolerance = relative_tolerance(method, value, motion);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     run.sample_error = std::max(run.sample_error, samples[i]);
     run.error_at_steps = std::max(run.error_at_steps, at_steps[i]);
     // The uncertainty of the true motion is counted in favour of the run.
     const double error = samples[i] - motion.conditioning();
     run.plain_ratio = std::max(run.plain_ratio, error / least);
-    run.ratio = std::max(run.ratio, error / std::max(least, run.error_at_steps));
+    run.ratio = std::max(run.ratio, error / std::max({least, tolerance, run.error_at_steps}));
   }
   return run;
 }

@@ -19,7 +19,8 @@ struct SampledRun {
   // The largest at a look, that of the end, and the largest at ends of steps.
   double sample_error = 0, end_error = 0, error_at_steps = 0;
   // The largest error of a look over the largest of three numbers: the error at the end, that at
-  // ends of steps so far, and the tolerance. The plain one leaves out ends of steps.
+  // ends of steps so far, and the tolerance of a position. The plain one is over the error at the
+  // end and rtol.
   double ratio = 0, plain_ratio = 0;
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SampledRun, name, kind, method, value, reached_end, sample_error,
