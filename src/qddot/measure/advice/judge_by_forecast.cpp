@@ -194,13 +194,13 @@ bool Search::judge_by_forecast(double accuracy) {
         check_.set({});
       }
     }
+    const bool is_calm = effect_on_first && *effect_on_first <= rules_.small * accuracy;
+    if (round > 0 && !is_calm && !check_.conditioning()) check_.condition(unpushed, accuracy);
+    if (check_.is_hopeless(accuracy)) return false;
     // Errors so much larger than the forecast show no order: at first, and once it has learned.
     const double unforeseen = round == 0 ? rules_.small * rules_.small : rules_.small;
     if (between > (round == 0 ? rules_.small : accuracy) && error < unforeseen * between)
       return false;
-    const bool is_calm = effect_on_first && *effect_on_first <= rules_.small * accuracy;
-    if (round > 0 && !is_calm && !check_.conditioning()) check_.condition(unpushed, accuracy);
-    if (check_.is_hopeless(accuracy)) return false;
     // The check may be the run that a finer one checks.
     if (forecast_->error(*checked.method, checked.value) <= aim) tried = &checked;
   }

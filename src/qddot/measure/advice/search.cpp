@@ -61,6 +61,9 @@ bool Search::judge(double accuracy) {
   check_.set({});
   const bool is_found = judge_at_last(accuracy, false);
   if (!check_.conditioning()) check_.set(seen);
+  // The run that is known best tells whether rounding is the reason.
+  const Trial* best = check_.best();
+  if (!is_found && best && !check_.conditioning()) check_.condition(*best, accuracy);
   return is_found;
 }
 
