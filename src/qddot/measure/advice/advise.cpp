@@ -25,13 +25,13 @@ void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) 
 }
 
 // The bound of a run's error without looks. Steps of error control that end at looks are longer
-// without them, and errors may be some times as large.
+// without them, and errors may be ten times as large.
 double error_without_looks(const Search& search, const Trial& trial) {
   const Method& method = *trial.method;
   const bool is_alone = search.runs().stage().model().system().has_massless();
   const bool ends_at_looks = method.knob == Knob::rtol && !method.is(Trait::interpolates);
-  const double times = ends_at_looks && !is_alone ? search.runs().rules().doubt_of_two() : 1;
-  return times * search.check().bound(trial)->error;
+  const double error = search.check().bound(trial)->error;
+  return ends_at_looks && !is_alone ? error / search.runs().rules().small : error;
 }
 
 // The fastest runs that are known to reach the accuracy.
