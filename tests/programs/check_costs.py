@@ -313,7 +313,9 @@ class Advice(Programs):
         self.assertEqual([row["accuracy"] for row in rows], [1e-2, 1e-4, 1e-8])
         for row in rows:
             self.assertLessEqual(row["predicted_error"], row["accuracy"])
-            self.assertTrue(row["margin"] >= 1 and row["runner_up"])
+            # A machine that is busy may have no time for a run of a second method.
+            self.assertEqual(bool(row["runner_up"]), row["margin"] is not None)
+            self.assertGreaterEqual(row["margin"] or 1, 1)
             self.assertIn(f"--method {row['method']}", ended.stdout)
             option = "--" + row["knob"].replace("_", "-")
             line = f"simulate --scene cloth --until 0.05 --method {row['method']} {option}"
