@@ -58,7 +58,7 @@ MatrixXd dense_matrix(Form form, const System& system, double gamma, const Symme
   const MatrixXd one = MatrixXd::Identity(n, n);
   MatrixXd a(2 * n, 2 * n);
   if (form == Form::explicit_gamma) {
-    a << one, -gamma * one, -gamma * dense_mass(system).inverse() * dense(k), one;
+    a << one, -gamma * one, -gamma * system.mass().cwiseInverse().asDiagonal() * dense(k), one;
   } else {
     const Vec has_mass = (system.mass().array() > 0).cast<double>();
     const MatrixXd of_mass = has_mass.asDiagonal();
@@ -71,9 +71,9 @@ MatrixXd dense_matrix(Form form, const System& system, double gamma, const Symme
 MatrixXd effective(const System& system, double gamma, const SymmetricMatrix& k) {
   return dense_mass(system) - gamma * gamma * dense(k);
 }
-double condition(const MatrixXd& a) {
-  const Vec sigma = Eigen::JacobiSVD<MatrixXd>(a).singularValues();
-  return sigma[0] / sigma[sigma.size() - 1];
+double condition(const MatrixXd& symmetric) {
+  const Vec sizes = eigenvalues(symmetric).cwiseAbs();
+  return sizes.maxCoeff() / sizes.minCoeff();
 }
 
 // The distance of the solution of `solver` to that of dense LU, as a multiple of the expected
@@ -82,7 +82,7 @@ double condition(const MatrixXd& a) {
 double roundings(Solver& solver, Form form, const System& system, double gamma,
                  const SymmetricMatrix& k, const Vec& b) {
   const MatrixXd a = dense_matrix(form, system, gamma, k);
-  const Vec x = a.fullPivLu().solve(b);
+  const Vec x = solution(a, b);
   const double worst =
       eps * condition(effective(system, gamma, k)) * (1 + 1 / gamma) * x.lpNorm<Eigen::Infinity>();
   return distance(solver.solve(b), x) / worst;
