@@ -69,11 +69,22 @@ double largest_h_omega(const Method& method, double error) {
   const double small = asymptotic(method), there = at(method, small);
   if (!std::isfinite(there) || !(error > 0)) return 0;
   if (there > error) return small * std::pow(error / there, 1.0 / method.order);
-  double low = small, high = std::min(largest_searched, linear_limit(method));
-  if (frequency_error(method, high) <= error) return high;
-  while (high > low * std::exp(1 / per_logarithm)) {
-    const double middle = std::sqrt(low * high);
-    (frequency_error(method, middle) <= error ? low : high) = middle;
+  const double most = std::min(largest_searched, linear_limit(method)),
+               apart = std::exp(1 / per_logarithm);
+  // The order says where the error is reached; beyond what is asymptotic it says so again from
+  // there. Halves end the search where the error follows no order.
+  constexpr int guesses = 4;
+  double low = small, high = most * apart, from = small, error_there = there;
+  for (int i = 0; high > low * apart; ++i) {
+    double next = std::sqrt(low * high);
+    if (i < guesses && std::isfinite(error_there)) {
+      const double guess = from * std::pow(error / error_there, 1.0 / method.order);
+      next = std::clamp(guess, low * apart, high / apart);
+    }
+    from = next = std::min(next, most);
+    error_there = frequency_error(method, next);
+    (error_there <= error ? low : high) = next;
+    if (low == most) break;
   }
   return low;
 }

@@ -61,9 +61,10 @@ std::optional<Candidate> Search::first_of_method(double fewest, double accuracy)
       const double own =
           splits ? resolved_frequency(method, system_, model_.initial().q) : forecast_->own().at(2);
       steps = std::max(steps, std::ceil(until_ * own));
-      if (has_linear_step(method))
-        steps = std::max(steps, std::ceil(until_ / forecast_->step_by_frequency(method, accuracy)));
       steps = std::max(steps, rules_.doubt_of_two() * until_ / failed);
+      // To find this step takes longer than short runs.
+      if (has_linear_step(method) && steps * of_step < fewest)
+        steps = std::max(steps, std::ceil(until_ / forecast_->step_by_frequency(method, accuracy)));
       value = until_ / steps;
       if (splits) steps = std::max(steps, runs_.steps_of_verlet());
     }
@@ -77,10 +78,11 @@ std::optional<Candidate> Search::first_of_method(double fewest, double accuracy)
 
 const Trial* Search::race(const Trial* answer, double accuracy) {
   if (answer->method->order == 0 || !check_.has_judge() || runs_.stage().rests()) return answer;
-  const double end = runs_.seconds() + std::max(rules_.unnoticed - answer->seconds,
-                                                rules_.part_of_answer * answer->seconds);
   if (!may_forecast(*answer)) return answer;
   forecast_->learn(check_);
+  runs_.time_again(*answer);
+  const double end = runs_.seconds() + std::max(rules_.unnoticed - answer->seconds,
+                                                rules_.part_of_answer * answer->seconds);
   const double rounding = check_.conditioning() ? check_.conditioning()->share : 0;
   const double aim = std::clamp(rules_.clearly_below - rounding / accuracy, rules_.small,
                                 1 - rules_.doubt * rules_.part_of_judge) *
@@ -99,7 +101,10 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
     constexpr double of_clock = 1e-5;  // [s], the time to see that it is over
     const Trial& trial = runs_.make(*next->method, next->value, {.seconds = seconds + of_clock});
     forecast_->learn(check_);
-    if (trial.seconds < answer->seconds && check_.is_known(trial, accuracy)) answer = &trial;
+    if (trial.seconds > rules_.doubt * answer->seconds || !check_.is_known(trial, accuracy))
+      continue;
+    runs_.time_again(trial);
+    if (trial.seconds < answer->seconds) answer = &trial;
   }
   return answer;
 }

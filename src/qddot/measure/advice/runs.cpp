@@ -46,6 +46,11 @@ const Trial& Runs::make(const Method& method, double value, const Limits& limits
   return all_.back();
 }
 
+void Runs::time_again(const Trial& run) {
+  const auto own = std::ranges::find(all_, &run, [](const Trial& trial) { return &trial; });
+  stage_.time_again(*own);
+}
+
 const Trial& Runs::make_pushed(const Method& method, double value, const Push& push) {
   all_.push_back(stage_.run_pushed(method, value, {.seconds = seconds_left()}, push));
   return all_.back();

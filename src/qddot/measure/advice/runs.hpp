@@ -18,6 +18,8 @@ class Runs {
 
   // Makes a run.
   const Trial& make(const Method& method, double value, const Limits& limits = {});
+  // Repeats a run that is short, as its time is to be compared with another's.
+  void time_again(const Trial& run);
   // Makes it from a start that is pushed.
   const Trial& make_pushed(const Method& method, double value, const Push& push = {});
   // The run that was made before; nullptr if there is none.

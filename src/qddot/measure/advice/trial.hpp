@@ -70,7 +70,8 @@ class Stage {
   // The same from a start that is pushed.
   Trial run_pushed(const Method& method, double value, const Limits& limits,
                    const Push& push) const;
-  // Repeats a trial that reached the end in a short time; its time becomes the least of all.
+  // Repeats a trial that reached the end in a short time, without looks; its time becomes the
+  // lesser one.
   void time_again(Trial& trial) const;
 
   // Takes the scales of errors from the trial, which reached the end. Errors need this first.
