@@ -132,7 +132,8 @@ bool Search::judge_by_forecast(double accuracy) {
   // The bound of w_max may grow more than w_max does. The run was stable.
   forecast_.emplace(runs_, first->path,
                     std::min(w_start_ * growth, linear_limit(*first->method) / first->value));
-  const double aim = rules_.doubt * rules_.part_of_judge * accuracy;
+  // A pair's bound of the coarser error is then clearly below the accuracy.
+  const double aim = rules_.clearly_below * (1 - 1 / rules_.finer) / rules_.doubt * accuracy;
   const Trial* tried = first;
   std::optional<double> effect_on_first;
   for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
