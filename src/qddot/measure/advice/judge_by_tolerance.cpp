@@ -92,11 +92,14 @@ std::vector<const Method*> Search::with_error_control(bool implicitly, double ac
   return {suited, highest};
 }
 
-bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces) {
+bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces,
+                                    bool is_last) {
   for (const Method* method : with_error_control(implicitly, accuracy)) {
     if (judge_by_tolerance(*method, accuracy, most_forces)) return true;
-    // A motion that rounding leaves unknown is so for all methods.
-    if (check_.is_hopeless(accuracy)) return false;
+    // A motion that rounding leaves unknown is so for all methods. What is too much work for one is
+    // so for the next.
+    const bool is_too_much = !is_last && runs_.all().back().summary.outcome == Outcome::over_budget;
+    if (is_too_much || check_.is_hopeless(accuracy)) return false;
   }
   return false;
 }

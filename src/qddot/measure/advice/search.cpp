@@ -48,11 +48,11 @@ bool Search::judge(double accuracy) {
   // Explicit methods take no fewer steps than Verlet's where vibrations bound them.
   const std::int64_t few = runs_.forces_within(rules_.little_work);
   if (runs_.steps_of_verlet() < static_cast<double>(few / runs_of_three) &&
-      judge_by_error_control(accuracy, false, few))
+      judge_by_error_control(accuracy, false, few, false))
     return true;
   if (check_.is_hopeless(accuracy)) return false;
   const auto worth = forces_worth_implicit_steps(accuracy);
-  if (worth > 0 && judge_by_error_control(accuracy, true, worth)) return true;
+  if (worth > 0 && judge_by_error_control(accuracy, true, worth, false)) return true;
   if (check_.is_hopeless(accuracy)) return false;
   is_judged_by_forecast_ = judge_by_forecast(accuracy);
   if (is_judged_by_forecast_) return true;
@@ -73,7 +73,7 @@ bool Search::judge_at_last(double accuracy, bool implicitly) {
   for (const Trial& trial : runs_.all()) forces += runs_.forces(trial);
   const bool is_found = judge_by_error_control(
       accuracy, implicitly,
-      std::max(runs_.forces_within(rules_.much_work), static_cast<std::int64_t>(forces)));
+      std::max(runs_.forces_within(rules_.much_work), static_cast<std::int64_t>(forces)), true);
   // The finest run tells whether rounding is the reason.
   if (!is_found && finest_ && !check_.conditioning()) check_.condition(*finest_, accuracy);
   return is_found;

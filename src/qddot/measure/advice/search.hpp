@@ -53,7 +53,8 @@ class Search {
   bool judge(double accuracy);
   bool judge_in_closed_form(double accuracy);
   bool judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left);
-  bool judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces);
+  bool judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces,
+                              bool is_last);
   bool judge_at_last(double accuracy, bool implicitly);
   bool judge_by_forecast(double accuracy);
   void accept_pair(const Trial& coarse, const Trial& fine, double share);
