@@ -98,7 +98,8 @@ bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64
     if (judge_by_tolerance(*method, accuracy, most_forces)) return true;
     // A motion that rounding leaves unknown is so for all methods. What is too much work for one is
     // so for the next.
-    const bool is_too_much = !is_last && runs_.all().back().summary.outcome == Outcome::over_budget;
+    const bool is_too_much = !is_last && !runs_.all().empty() &&
+                             runs_.all().back().summary.outcome == Outcome::over_budget;
     if (is_too_much || check_.is_hopeless(accuracy)) return false;
   }
   return false;

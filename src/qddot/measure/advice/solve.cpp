@@ -71,7 +71,9 @@ Answer of_nothing(const ReducedScene& model, double until, const Wanted& wanted)
   }
   const bool counts = displacement > 0 && wanted.of != AccuracyOf::energy;
   const double roundings = counts ? std::max(1.0, extent / displacement) : 1;
-  answer.error_estimate = 4 * machine_epsilon * roundings;
+  // Coordinates that were settled are sums of many.
+  constexpr Rules rules;
+  answer.error_estimate = machine_epsilon * (counts ? 4 * roundings : rules.rest);
   answer.error_estimate_kind = EstimateKind::rounding;
   answer.is_reached = answer.error_estimate <= wanted.accuracy;
   if (!answer.is_reached) {
