@@ -136,7 +136,7 @@ CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
     result.left_out = "the drawn motion leaves its symmetry";
     return result;
   }
-  if (result.certified > good_reference * drawn.accuracy) {
+  if (!(result.certified <= good_reference * drawn.accuracy)) {
     result.left_out = "the reference is not certified to three tenths of the accuracy";
     return result;
   }

@@ -55,6 +55,23 @@ BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
   }
 }
 
+// The first step tried is a thousandth of the end, many periods here. Its stages grow by the
+// cube of the displacement, until they are no numbers.
+BOOST_AUTO_TEST_CASE(a_step_too_long_for_numbers_is_shortened) {
+  Scene scene{.name = "quartic", .dimension = 1};
+  scene.nodes = {{.position = {0, 0, 0}, .pinned = true}, {.position = {1.8, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 100, .rest_length = 1, .quartic = 100}}};
+  const ReducedScene model(scene);
+  const double until = 5000;  // s
+  Scales scales;
+  extend(scales, model, model.initial());
+  const auto end = fehlberg(model, until, 1e-11, scales, seconds);
+  BOOST_TEST_REQUIRE(end.has_value());
+  // The tolerance, in some 10^5 steps.
+  BOOST_TEST(std::abs(model.energy(end->end) / model.energy(model.initial()) - 1) < 1e-5);
+  BOOST_TEST(make_reference(model, 20, seconds).certified.position < 1e-7);
+}
+
 BOOST_AUTO_TEST_CASE(scales_are_the_extremes_of_the_whole_motion) {
   // x = cos 10 t: from 1 to -1 and back, with the speed 10 between.
   const ReducedScene scene(load_scene("oscillator"));

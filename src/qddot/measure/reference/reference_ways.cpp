@@ -37,7 +37,7 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
     Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
     Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
   };
-  Stacked y(2 * n, 0.0);
+  Stacked y(2 * n, 0.0), before;
   Eigen::Map<Vec>(y.data() + n, n) = v / speed;
 
   auto stepper =
@@ -51,7 +51,14 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
     if (is_last) dt = left;
     const double taken = dt;
     double unused = t;
+    before = y;
     if (stepper.try_step(rate, y, unused, dt) != odeint::success) continue;
+    // An error that is no number does not fail a step: that of a step too long for numbers.
+    if (!Eigen::Map<const Vec>(y.data(), 2 * n).allFinite()) {
+      y = before;
+      dt = taken / 2;
+      continue;
+    }
     const double more = taken + rest, next = t + more;
     rest = more - (next - t);
     t = next;
