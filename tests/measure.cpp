@@ -76,7 +76,6 @@ Vec mean_force_between(const System& system, const Vec& a, const Vec& b) {
 Vec eigenvalues(const Eigen::MatrixXd& lower) {
   return lower.selfadjointView<Eigen::Lower>().eigenvalues();
 }
-double spectral_radius(const Eigen::MatrixXd& a) { return a.eigenvalues().cwiseAbs().maxCoeff(); }
 Vec solution(const Eigen::MatrixXd& a, const Vec& b) { return a.fullPivLu().solve(b); }
 double smallest_eigenvalue(const Eigen::MatrixXd& a) {
   return a.rows() == 0 ? 0 : eigenvalues(a)[0];

@@ -54,8 +54,6 @@ Vec mean_force_between(const System& system, const Vec& a, const Vec& b);
 
 // The eigenvalues of the symmetric matrix with this lower triangle, ascending.
 Vec eigenvalues(const Eigen::MatrixXd& lower);
-// The largest modulus of the eigenvalues of a matrix.
-double spectral_radius(const Eigen::MatrixXd& a);
 // x of a x = b, by a dense decomposition.
 Vec solution(const Eigen::MatrixXd& a, const Vec& b);
 // The least and the largest eigenvalue of a symmetric matrix; 0 if it is empty.

@@ -25,13 +25,17 @@ void keep_faster(std::optional<Candidate>& fastest, const Candidate& candidate) 
 }
 
 // The bound of a run's error without looks. Steps of error control that end at looks are longer
-// without them, and errors may be ten times as large.
+// without them, and errors on the way may be ten times as large. Those at the end are of runs that
+// have no looks (see try_sundials).
 double error_without_looks(const Search& search, const Trial& trial) {
   const Method& method = *trial.method;
-  const bool is_alone = search.runs().stage().model().system().has_massless();
+  const Stage& stage = search.runs().stage();
+  const bool is_alone = stage.model().system().has_massless();
   const bool ends_at_looks = method.knob == Knob::rtol && !method.is(Trait::interpolates);
   const double error = search.check().bound(trial)->error;
-  return ends_at_looks && !is_alone ? error / search.runs().rules().small : error;
+  return ends_at_looks && !is_alone && stage.of() != AccuracyOf::positions
+             ? error / search.runs().rules().small
+             : error;
 }
 
 // The fastest runs that are known to reach the accuracy.
@@ -69,7 +73,9 @@ void try_sundials(Search& search, double accuracy, double seconds) {
         !method.stock_of.empty() || !applies_to(method, system) || method.order < 4 ||
         (system.has_massless() && !method.is(Trait::accepts_massless)))
       continue;
-    search.try_once(method, std::clamp(tolerance * accuracy, 10 * least_accuracy, tolerance), left);
+    search.try_once(
+        method, std::clamp(tolerance * accuracy, 10 * least_accuracy, tolerance),
+        {.seconds = left, .only_end = search.runs().stage().of() == AccuracyOf::positions});
   }
 }
 

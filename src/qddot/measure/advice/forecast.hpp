@@ -34,7 +34,7 @@ double power_of_error(const Method& method);
 class Forecast {
  public:
   // Borrows the runs. `path` is the motion as one of them saw it, `w_motion` the largest frequency
-  // over it [rad/s], zero if nothing vibrates.
+  // over it [rad/s], which is above zero.
   Forecast(const Runs& runs, const std::vector<State>& path, double w_motion);
 
   // The expected error; infinite if nothing is known. `value`: the knob, h [s] or rtol.

@@ -79,12 +79,11 @@ double largest_h_omega(const Method& method, double error) {
     double next = std::sqrt(low * high);
     if (i < guesses && std::isfinite(error_there)) {
       const double guess = from * std::pow(error / error_there, 1.0 / method.order);
-      next = std::clamp(guess, low * apart, high / apart);
+      next = std::max(low * apart, std::min(guess, high / apart));
     }
     from = next = std::min(next, most);
     error_there = frequency_error(method, next);
     (error_there <= error ? low : high) = next;
-    if (low == most) break;
   }
   return low;
 }

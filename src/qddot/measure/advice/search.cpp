@@ -28,8 +28,8 @@ const Trial* Search::find(double accuracy) {
   return known ? race(known, accuracy) : nullptr;
 }
 
-void Search::try_once(const Method& method, double value, double seconds) {
-  if (!runs_.has(method, value)) runs_.make(method, value, {.seconds = seconds});
+void Search::try_once(const Method& method, double value, const Limits& limits) {
+  if (!runs_.has(method, value)) runs_.make(method, value, limits);
 }
 
 // The judge by the motion: in closed form, of little work, or by a forecast. All that fails, runs

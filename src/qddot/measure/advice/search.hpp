@@ -33,8 +33,8 @@ class Search {
   // Makes runs until the error of one is known to be at most `accuracy`; nullptr if that fails.
   // Then makes runs that may reach the accuracy faster, while that is worth its time.
   const Trial* find(double accuracy);
-  // Makes the run unless it was made before, for `seconds` at most.
-  void try_once(const Method& method, double value, double seconds);
+  // Makes the run unless it was made before.
+  void try_once(const Method& method, double value, const Limits& limits);
 
   const Runs& runs() const { return runs_; }
   const Check& check() const { return check_; }

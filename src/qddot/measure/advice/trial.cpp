@@ -54,7 +54,8 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
     trial.energy_gain = std::max(trial.energy_gain, gain);
     trial.energy_gap = std::max(trial.energy_gap, std::abs(gain));
   };
-  Observer each{times_, [&](const State& seen) { trial.path.push_back(seen); }, see_step};
+  Observer each{limits.only_end ? std::vector{until_} : times_,
+                [&](const State& seen) { trial.path.push_back(seen); }, see_step};
   if (!each.step && of_ == AccuracyOf::energy) each.step = see_energy;
   trial.seconds = seconds_of(
       [&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });

@@ -37,7 +37,7 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
     Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
     Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
   };
-  Stacked y(2 * n, 0.0), before;
+  Stacked y(2 * n, 0.0), end(2 * n);
   Eigen::Map<Vec>(y.data() + n, n) = v / speed;
 
   auto stepper =
@@ -51,14 +51,13 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
     if (is_last) dt = left;
     const double taken = dt;
     double unused = t;
-    before = y;
-    if (stepper.try_step(rate, y, unused, dt) != odeint::success) continue;
+    if (stepper.try_step(rate, y, unused, end, dt) != odeint::success) continue;
     // An error that is no number does not fail a step: that of a step too long for numbers.
-    if (!Eigen::Map<const Vec>(y.data(), 2 * n).allFinite()) {
-      y = before;
+    if (!Eigen::Map<const Vec>(end.data(), 2 * n).allFinite()) {
       dt = taken / 2;
       continue;
     }
+    y.swap(end);
     const double more = taken + rest, next = t + more;
     rest = more - (next - t);
     t = next;
