@@ -21,9 +21,17 @@ std::optional<Candidate> Search::promised(double error, double seconds) const {
 }
 
 // The first run of a method that has no forecast without one: of those that evaluate fewer forces
-// than `fewest`, the cheapest.
-std::optional<Candidate> Search::first_of_method(double fewest, double accuracy) {
+// than `fewest`, the cheapest. An answer that is much more accurate than need be has short steps
+// for vibrations that hardly move. Implicit methods may then take steps of any length, and begin
+// with so few that those take a small part of its time.
+std::optional<Candidate> Search::first_of_method(const Trial& answer, double fewest,
+                                                 double accuracy) {
   std::optional<Candidate> cheapest;
+  const bool is_held_back = check_.bound(answer)->error <= rules_.small * accuracy;
+  const double few =
+      is_held_back && system_.has_stiffness()
+          ? std::floor(rules_.small * runs_.forces(answer) / forces_of_implicit_step(2))
+          : 0;
   for (const Method& method : methods()) {
     const bool is_implicit = method.is(Trait::implicit);
     if (is_forecast_by_frequency(method) || method.order < 2 || !applies_to(method, system_) ||
@@ -34,36 +42,42 @@ std::optional<Candidate> Search::first_of_method(double fewest, double accuracy)
     const bool splits = method.asks(Need::split_forces);
     // Stiff forces are evaluated as often as by Verlet's method.
     if (splits && runs_.steps_of_verlet() >= fewest) continue;
-    // A step that was too long says that the first run is still to come.
+    // A step that was too long, or an error as large as the motion, says nothing of shorter steps.
     double failed = INFINITY;
     bool is_known = false;
     for (const Trial& trial : runs_.all()) {
       if (trial.method != &method) continue;
       failed = std::min(failed, trial.value);
-      is_known |= method.knob == Knob::rtol || trial.reached_end() ||
-                  trial.summary.outcome == Outcome::over_budget;
+      const bool was_over_budget = trial.summary.outcome == Outcome::over_budget;
+      const auto bound = check_.bound(trial);
+      is_known |= (bound && runs_.is_sound(trial) && bound->error < 1) ||
+                  (method.knob == Knob::rtol && !was_over_budget) ||
+                  (was_over_budget && rules_.doubt * trial.seconds > answer.seconds);
     }
     if (is_known) continue;
     // The work of the run at least, in forces: a step of order p takes about p of them.
     double value = std::clamp(accuracy, 10 * least_accuracy, rules_.largest_tolerance),
            steps = rules_.places, of_step = method.knob == Knob::rtol ? method.order : 1;
-    // Nonlinear equations take at least two solves.
+    // Nonlinear equations take several solves, and steps with error control may be tried twice.
     if (is_implicit)
-      of_step =
-          forces_of_implicit_step(method.order) * (method.is(Trait::linearly_implicit) ? 1 : 2);
+      of_step = forces_of_implicit_step(method.order) *
+                (method.listens_to(Option::solve_tolerance) ? rules_.doubt_of_two() : 1) *
+                (method.knob == Knob::rtol ? rules_.doubt : 1);
     if (method.knob == Knob::rtol) {
       // Steps of order p leave the accuracy if h w_p is its p-th root.
       steps = std::max(steps, until_ * forecast_->own().at(method.order) *
                                   std::pow(accuracy, -1.0 / method.order));
       if (method.is(Trait::bounds_steps)) steps = std::max(steps, until_ * forecast_->w_motion());
+      if (is_implicit && is_held_back) steps = std::max(1.0, few);
     } else {
       // Steps that resolve the motion's own frequency of order 2, or the soft forces.
       const double own =
           splits ? resolved_frequency(method, system_, model_.initial().q) : forecast_->own().at(2);
       steps = std::max(steps, std::ceil(until_ * own));
-      steps = std::max(steps, rules_.doubt_of_two() * until_ / failed);
+      if (is_implicit && is_held_back) steps = std::clamp(few, 1.0, steps);
+      steps = std::max(steps, rules_.doubt * until_ / failed);
       // To find this step takes longer than short runs.
-      if (has_linear_step(method) && steps * of_step < fewest)
+      if (!is_held_back && has_linear_step(method) && steps * of_step < fewest)
         steps = std::max(steps, std::ceil(until_ / forecast_->step_by_frequency(method, accuracy)));
       value = until_ / steps;
       if (splits) steps = std::max(steps, runs_.steps_of_verlet());
@@ -95,11 +109,16 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
     // Forces of methods that were not run may be cheaper. All may be tried where that takes no
     // time.
     const double fewest = runs_.forces(*answer) * std::max(1.0, left / answer->seconds);
-    const auto first = first_of_method(fewest, accuracy);
-    if (!next || (first && first->forces < next->forces)) next = first;
+    const auto first = first_of_method(*answer, fewest, accuracy);
+    // What is expected to be much faster comes first: the others then take less time.
+    const bool is_much_faster = next && rules_.doubt * next->seconds < answer->seconds;
+    if (!next || (first && !is_much_faster && first->forces < next->forces)) next = first;
     if (!next) break;
     constexpr double of_clock = 1e-5;  // [s], the time to see that it is over
-    const Trial& trial = runs_.make(*next->method, next->value, {.seconds = seconds + of_clock});
+    // Looks would end steps that are longer than the time between them.
+    const Trial& trial = runs_.make(
+        *next->method, next->value,
+        {.seconds = seconds + of_clock, .only_end = runs_.stage().of() == AccuracyOf::positions});
     forecast_->learn(check_);
     if (trial.seconds > rules_.doubt * answer->seconds || !check_.is_known(trial, accuracy))
       continue;

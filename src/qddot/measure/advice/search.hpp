@@ -69,7 +69,7 @@ class Search {
                                               double unseen) const;
   bool may_forecast(const Trial& trial);
   std::optional<Candidate> promised(double error, double seconds) const;
-  std::optional<Candidate> first_of_method(double fewest, double accuracy);
+  std::optional<Candidate> first_of_method(const Trial& answer, double fewest, double accuracy);
   const Trial* race(const Trial* answer, double accuracy);
 
   const ReducedScene& model_;
