@@ -98,12 +98,19 @@ std::optional<Candidate> Search::explicit_candidate(double error, const Method* 
 // expected to be at most this share of the other.
 void Search::accept_pair(const Trial& coarse, const Trial& fine, double share) {
   const double between = runs_.distance_on_the_way(coarse, fine);
-  // The energy that a run gains bounds its error from below, as the motion keeps it.
-  const double kinetic = runs_.stage().scales().kinetic;
-  const double gained = kinetic > 0 ? fine.energy_gain / kinetic : 0;
-  check_.accept(coarse, {rules_.doubt * between / (1 - share), &fine});
   // Errors may not fall by their order. The finer one's is then still at most half of the other.
-  check_.accept(fine, {std::max(between, rules_.small * gained), &coarse, true});
+  double own = between;
+  // The motion keeps its energy, so that what a run gains bounds its error from below.
+  const double kinetic = runs_.stage().scales().kinetic;
+  if (kinetic > 0) {
+    own = std::max(own, rules_.small * fine.energy_gain / kinetic);
+    // A force that turns within a step gives both runs a wrong push, and other steps another one.
+    // Two may be near each other by chance, but the error of the energy does not fall.
+    if (rules_.doubt * fine.energy_gap > coarse.energy_gap)
+      own = std::max(own, rules_.doubt_of_two() * fine.energy_gap / kinetic);
+  }
+  check_.accept(coarse, {std::max(rules_.doubt * between / (1 - share), own + between), &fine});
+  check_.accept(fine, {own, &coarse, true});
 }
 
 // Whether the first run has the accuracy, by a finer one that was to be checked itself.
