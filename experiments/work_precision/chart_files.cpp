@@ -71,7 +71,7 @@ void print_front(const std::string& scene, const Chart& chart) {
         "The motion is chaotic (Lyapunov exponent {:.3g}/s): two runs that start one rounding "
         "apart\ndiffer from t = {:.3g} s on by more than {:g} of the motion.\nPosition errors at "
         "the end mean nothing; below, accuracy is that of the energy.\n\n",
-        reference.lyapunov, reference.horizon, apart);
+        reference.lyapunov, reference.horizon, far_apart);
   } else if (reference.is_chaotic()) {
     fmt::print(
         "The motion is chaotic: one rounding of the start grows {:.0e} times and moves the end "

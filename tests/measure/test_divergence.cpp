@@ -29,7 +29,7 @@ auto exponential(double rate) {
   return [rate](double t) { return std::min(0.3, rounding * std::exp(rate * t)); };
 }
 
-double exact_horizon(double rate) { return std::log(apart / rounding) / rate; }
+double exact_horizon(double rate) { return std::log(far_apart / rounding) / rate; }
 
 }  // namespace
 

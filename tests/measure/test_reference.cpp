@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
   BOOST_TEST(!early.is_beyond_horizon());
   BOOST_TEST((early.certified.position < 1e-4 && early.horizon > 6));
   BOOST_TEST((late.is_beyond_horizon() && late.is_chaotic()));
-  BOOST_TEST(late.certified.position > apart);
+  BOOST_TEST(late.certified.position > far_apart);
   // Growth is uneven, so that it is foreseen but roughly.
   BOOST_TEST(early.horizon == late.horizon, boost::test_tools::tolerance(0.25));
   BOOST_TEST(early.lyapunov == late.lyapunov, boost::test_tools::tolerance(0.5));
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
   };
   const double soon = 0.8 * late.horizon;
   BOOST_TEST(errors_between(scene, end(far, soon), end(near, soon), 0, late.scales).position >
-             apart);
+             far_apart);
 }
 
 BOOST_AUTO_TEST_CASE(refinement_goes_on_while_steps_are_too_coarse_for_its_order) {
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) 
   }
   BOOST_TEST(!early.is_only_symmetric());
   BOOST_TEST(late.is_only_symmetric());
-  BOOST_TEST(late.out_of_symmetry->effect > apart);
+  BOOST_TEST(late.out_of_symmetry->effect > far_apart);
   BOOST_TEST((late.out_of_symmetry->horizon > 0.3 && late.out_of_symmetry->horizon < 0.6));
   // The motion along the line changes F by some.
   BOOST_TEST(late.out_of_symmetry->lyapunov == 66, boost::test_tools::tolerance(0.25));

@@ -1,6 +1,7 @@
 // The bounds that a search knows of its runs; its results are tested in test_solve.cpp.
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <boost/test/unit_test.hpp>
 
@@ -80,6 +81,37 @@ BOOST_AUTO_TEST_CASE(every_bound_holds) {
       }
     }
   }
+}
+
+// A mass passes its pin within a step that suits a stiff spring elsewhere. Each run misses another
+// part of the turning force, so that runs may be near each other by chance.
+BOOST_AUTO_TEST_CASE(pairs_that_pass_a_turning_force_are_known_no_better_than_their_energy) {
+  std::mt19937 bits(1);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * bits() / 4294967296.0;
+  };
+  Rules rules;
+  rules.little_work = rules.short_cut = 0;  // no error control before a forecast
+  int by_forecast = 0, false_bounds = 0;
+  for (int i = 0; i < 150; ++i) {
+    Scene scene = near_miss(std::pow(10, between(-6, -3)));
+    scene.nodes[1].velocity.x() = between(-16, -4);
+    scene.nodes.push_back({.position = {2.4, 1.2, -0.9}, .mass = 1});
+    scene.springs.push_back({{2, 3}, {.stiffness = std::pow(10, between(4, 7)), .rest_length = 1}});
+    const double until = between(1, 4), accuracy = std::pow(10, between(-4, -2));
+    const ReducedScene model(scene);
+    Search search(model, until, AccuracyOf::positions, seconds, &scene, rules);
+    const Trial* found = search.find(accuracy);
+    if (!found || !search.is_judged_by_forecast()) continue;
+    ++by_forecast;
+    const Stage& stage = search.runs().stage();
+    const Trial exact = stage.run(*find_method("dprkn12"), 1e-13, {});
+    false_bounds += stage.distance(*found, exact) > search.check().bound(*found)->error ? 1 : 0;
+  }
+  BOOST_TEST(by_forecast > 20);
+  // Of 440 such answers 2 have an error beyond their bound, as energies may fall by chance, too.
+  // Here it is one of about 50, and 9 if energies are not looked at.
+  BOOST_TEST(false_bounds <= 1);
 }
 
 // An outcome may not depend on the time that runs take. A clock that counts its own calls stands

@@ -106,7 +106,7 @@ void Search::accept_pair(const Trial& coarse, const Trial& fine, double share) {
     own = std::max(own, rules_.small * fine.energy_gain / kinetic);
     // A force that turns within a step gives both runs a wrong push, and other steps another one.
     // Two may be near each other by chance, but the error of the energy does not fall.
-    if (rules_.doubt * fine.energy_gap > coarse.energy_gap)
+    if (fine.energy_gap > rules_.drawn_together * coarse.energy_gap)
       own = std::max(own, rules_.doubt_of_two() * fine.energy_gap / kinetic);
   }
   check_.accept(coarse, {std::max(rules_.doubt * between / (1 - share), own + between), &fine});

@@ -24,7 +24,8 @@ struct Rules {
 
   // A judge's own error is at most this part of the accuracy.
   double part_of_judge = 0.2;
-  // Three runs draw together if the finer two differ by at most this part of what the outer two do.
+  // Three runs draw together if the finer two differ by at most this part of what the outer two do;
+  // two, if the energy error of the finer one is at most this part of the other.
   double drawn_together = 1.0 / 3;
   // Tolerances begin at the accuracy, or here.
   double largest_tolerance = 1e-2;

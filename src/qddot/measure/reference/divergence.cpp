@@ -14,14 +14,14 @@ Divergence divergence(const std::vector<double>& times, const std::vector<double
     largest.push_back(largest.empty() ? d : std::max(largest.back(), d));
   }
   const Divergence regular{std::numeric_limits<double>::infinity(), 0};
-  if (largest.empty() || largest.front() > apart / 10 ||
+  if (largest.empty() || largest.front() > far_apart / 10 ||
       !(largest.back() > exponential_growth * largest.front()))
     return regular;
 
   const auto first_above = [&](double bound) {
     return static_cast<std::size_t>(std::ranges::upper_bound(largest, bound) - largest.begin());
   };
-  const std::size_t free = first_above(apart / 10), near = first_above(apart);
+  const std::size_t free = first_above(far_apart / 10), near = first_above(far_apart);
   const double middle = (times.front() + times[free - 1]) / 2;
   std::vector<double> t, logarithm;
   // Two points at least, however few looks there are before the horizon.
@@ -34,7 +34,7 @@ Divergence divergence(const std::vector<double>& times, const std::vector<double
   const double lyapunov = straight_line(t, logarithm).slope;
   if (near < times.size()) return {times[near], lyapunov};
   if (!(lyapunov > 0)) return regular;
-  return {times.back() + std::log(apart / largest.back()) / lyapunov, lyapunov};
+  return {times.back() + std::log(far_apart / largest.back()) / lyapunov, lyapunov};
 }
 
 }  // namespace qddot::inline measure

@@ -37,7 +37,7 @@ Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
       const Errors change =
           errors_between(scene, next->end, best->end, scene.energy(best->end), next->scales);
       const double now = worse(change);
-      const bool is_lost = !(now < apart) && level < most_lost_levels;
+      const bool is_lost = !(now < far_apart) && level < most_lost_levels;
       if (now > before / 2 && !is_lost && is_rounding(*best, now)) {
         best->change = larger(last, change);
         return *best;
