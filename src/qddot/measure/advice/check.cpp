@@ -170,8 +170,10 @@ std::optional<Bound> Check::bound(const Trial& trial) const {
     const double seen =
         (is_bounded ? rules.doubt_of_two() : rules.doubt) * stage.energy_error(trial);
     const bool interpolates = trial.method->is(Trait::interpolates);
-    // The relative error of a velocity counts twice in the kinetic energy.
-    const double between = interpolates ? std::max(seen, 2 * between_steps(trial)) : seen;
+    // The relative error of a velocity counts twice in the kinetic energy, and velocities turn
+    // faster than positions.
+    const double between =
+        interpolates ? std::max(seen, rules.doubt_of_two() * between_steps(trial)) : seen;
     return Bound{between + least + share};
   }
   std::optional<Bound> best;
