@@ -102,13 +102,15 @@ void Search::accept_pair(const Trial& coarse, const Trial& fine, double share) {
   double own = between;
   // The motion keeps its energy, so that what a run gains bounds its error from below.
   const double kinetic = runs_.stage().scales().kinetic;
-  if (kinetic > 0) {
-    own = std::max(own, rules_.small * fine.energy_gain / kinetic);
-    // A force that turns within a step gives both runs a wrong push, and other steps another one.
-    // Two may be near each other by chance, but the error of the energy does not fall.
-    if (fine.energy_gap > rules_.drawn_together * coarse.energy_gap)
-      own = std::max(own, rules_.doubt_of_two() * fine.energy_gap / kinetic);
-  }
+  double told = rules_.small * fine.energy_gain;
+  // A force that turns within a step gives both runs a wrong push, and other steps another one. Two
+  // may be near each other by chance, but the error of the energy does not fall.
+  if (fine.energy_gap > rules_.drawn_together * coarse.energy_gap)
+    told = std::max(told, rules_.doubt_of_two() * fine.energy_gap);
+  // Rounding tells nothing of steps.
+  if (kinetic > 0 && told > own * kinetic &&
+      rules_.small * rules_.small * fine.energy_gap > kinetic * runs_.stage().energy_rounding(fine))
+    own = told / kinetic;
   check_.accept(coarse, {std::max(rules_.doubt * between / (1 - share), own + between), &fine});
   check_.accept(fine, {own, &coarse, true});
 }

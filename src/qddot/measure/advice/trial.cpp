@@ -172,7 +172,8 @@ double Stage::energy_rounding(const Trial& trial) const {
   for (State seen : trial.path) {
     const double energy = model_.energy(seen);
     for (double& q : seen.q) shift(q, std::abs(q));
-    largest = std::max(largest, std::abs(model_.energy(seen) - energy));
+    largest = std::max(
+        {largest, std::abs(model_.energy(seen) - energy), machine_epsilon * std::abs(energy)});
   }
   return largest / energy_scale();
 }
