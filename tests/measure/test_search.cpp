@@ -114,6 +114,24 @@ BOOST_AUTO_TEST_CASE(pairs_that_pass_a_turning_force_are_known_no_better_than_th
   BOOST_TEST(false_bounds <= 1);
 }
 
+// A pendulum on a stiff spring that hardly vibrates: explicit steps are 100 times shorter than the
+// accuracy needs.
+BOOST_AUTO_TEST_CASE(where_stiff_springs_hold_an_answer_back_implicit_methods_take_few_steps) {
+  Scene scene{.name = "stiff pendulum", .dimension = 2, .gravity = {0, -9.81, 0}};
+  scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 1e7, .rest_length = 1}}};
+  const double until = 2, accuracy = 1e-2;
+  const ReducedScene model(scene);
+  Search search(model, until, AccuracyOf::positions, seconds, &scene);
+  const Trial* found = search.find(accuracy);
+  BOOST_TEST_REQUIRE((found != nullptr));
+  BOOST_TEST(found->method->is(Trait::implicit), found->method->name);
+  BOOST_TEST(static_cast<double>(found->summary.counts.steps) <
+             0.1 * search.runs().steps_of_verlet());
+  const Trial exact = search.runs().stage().run(*find_method("dprkn12"), 1e-12, {});
+  BOOST_TEST(search.runs().stage().distance(*found, exact) <= search.check().bound(*found)->error);
+}
+
 // An outcome may not depend on the time that runs take. A clock that counts its own calls stands
 // for a machine of another speed.
 BOOST_AUTO_TEST_CASE(the_judge_is_the_same_on_machines_of_any_speed) {
