@@ -97,10 +97,12 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
   runs_.time_again(*answer);
   const double end = runs_.seconds() + std::max(rules_.unnoticed - answer->seconds,
                                                 rules_.part_of_answer * answer->seconds);
-  const double rounding = check_.conditioning() ? check_.conditioning()->share : 0;
-  const double aim = std::clamp(rules_.clearly_below - rounding / accuracy, rules_.small,
-                                1 - rules_.doubt * rules_.part_of_judge) *
-                     accuracy;
+  // A bound is 1.1 times the distance to a judge, beside what is unknown of the judge.
+  const double rounding = check_.conditioning() ? check_.conditioning()->share : 0,
+               unknown = std::max(rounding, check_.error_of(*check_.judge()));
+  const double aim =
+      std::max(rules_.small, rules_.clearly_below * (rules_.clearly_below - unknown / accuracy)) *
+      accuracy;
   while (runs_.seconds_left() > 0) {
     const double left = end - runs_.seconds();
     if (left <= 0) break;
