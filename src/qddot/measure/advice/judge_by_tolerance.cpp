@@ -57,7 +57,8 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
     // Errors that do not fall as the tolerances may be larger than what parts the runs.
     const double bound = together ? doubt : rules_.doubt * doubt;
     check_.accept(a, {bound * std::max(runs_.distance(a, c), runs_.distance(a, b)), &c});
-    check_.accept(b, {bound * std::max(inner, runs_.distance(b, c)), &c});
+    // The finer one of the last two may be no better than the other.
+    check_.accept(b, {bound * inner + std::max(inner, runs_.distance(b, c)), &c});
     check_.accept(c, {bound * inner, &b, true});
     if (check_.error_of(c) > rules_.part_of_judge * accuracy) continue;
     check_.condition(c, accuracy);
