@@ -5,7 +5,7 @@
 //   advice --out results/advice
 //   advice --cases 40 --first 4000000 --out results/other
 //
-//   advice --hard --first 30000000 --out results/hard
+//   advice --hard --first 32000000 --out results/hard
 //   advice --hard --cases 1 --first 21000007 --scenes --out results/one
 //
 //  1. Cases are drawn by their number (see drawn_case.hpp). The search was tuned on numbers below
@@ -19,7 +19,7 @@
 // The option --hard asks for hard motions instead (see hard_case.hpp), and judges positions, path
 // and energy against their true motion (see true_motion.hpp), advised runs as well. hard.csv has
 // the answers, hard_worth.csv says for each kind how often they hold and how often one is refused
-// that rounding allows. Rules may be chosen on numbers below 30000000.
+// that rounding allows. Rules may be chosen on numbers below 32000000.
 //
 // The options --hard --rules ask each hard motion again with each rule of the search halved and
 // doubled (see rules.hpp). rules.csv says what becomes of the bars, the refusals and the forces.
