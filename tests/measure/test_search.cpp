@@ -55,6 +55,15 @@ double error_of(const Trial& trial, const Search& search, const Reference& refer
       .position;
 }
 
+void bounds_hold(const Search& search, const Reference& reference) {
+  for (const Trial& trial : search.runs().all()) {
+    const auto bound = search.check().bound(trial);
+    if (!bound) continue;
+    BOOST_TEST(error_of(trial, search, reference) <= bound->error + reference.certified.position,
+               trial.method->name << " at " << trial.value);
+  }
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(every_bound_holds) {
@@ -72,13 +81,18 @@ BOOST_AUTO_TEST_CASE(every_bound_holds) {
       // times.
       const double part = search.is_judged_by_forecast() ? 0.25 : 0.01;
       BOOST_TEST(search.check().conditioning()->effect < part * accuracy);
-      for (const Trial& trial : search.runs().all()) {
-        const auto bound = search.check().bound(trial);
-        if (!bound) continue;
-        BOOST_TEST(
-            error_of(trial, search, reference) <= bound->error + reference.certified.position,
-            trial.method->name << " at " << trial.value);
+      bounds_hold(search, reference);
+      // The runs of a race are seen at their ends alone, and later questions meet them.
+      Search again(model, until, AccuracyOf::positions, seconds, &scene);
+      for (const double asked : {1e3 * accuracy, 30 * accuracy, accuracy}) {
+        const Trial* best = again.find(asked);
+        BOOST_TEST_REQUIRE((best != nullptr), asked);
+        BOOST_TEST(again.check().is_known(*best, asked));
       }
+      bounds_hold(again, reference);
+      const auto& differences = again.check().conditioning()->differences;
+      BOOST_TEST(
+          (differences.empty() || differences.size() == again.runs().stage().times().size()));
     }
   }
 }
@@ -164,6 +178,25 @@ BOOST_AUTO_TEST_CASE(a_pushed_run_checks_and_is_no_answer) {
     BOOST_TEST(trial.path.front().q.allFinite());
   }
   BOOST_TEST(pushed > 0);
+}
+
+// The way of a run that was not seen there cannot be compared.
+BOOST_AUTO_TEST_CASE(a_run_that_was_seen_at_its_end_alone_is_none_of_a_pair) {
+  const Scene scene = drawn("oscillator");
+  const ReducedScene model(scene);
+  Runs runs(model, 1, AccuracyOf::positions, seconds, nullptr, Rules{});
+  const Method& verlet = *find_method("verlet");
+  runs.make(verlet, 1e-3, {.only_end = true});
+  BOOST_TEST((runs.has(verlet, 1e-3) && !runs.find(verlet, 1e-3)));
+  const Trial& seen = runs.make(verlet, 1e-3);
+  BOOST_TEST((runs.find(verlet, 1e-3) == &seen));
+  // What rounding does is seen on the way, too.
+  runs.measure_by(seen);
+  Check check(runs);
+  check.accept(seen, {});
+  check.condition(runs.all().front(), 1e-3);
+  BOOST_TEST_REQUIRE(check.conditioning().has_value());
+  BOOST_TEST(check.conditioning()->differences.size() == runs.stage().times().size());
 }
 
 // The second of a pair begins one rounding away, so that both are apart by at least its effect.

@@ -33,6 +33,11 @@ double Check::beyond_own_error(const Trial& trial, double apart_by) const {
 
 void Check::condition(const Trial& judge, double accuracy) {
   conditioning_.reset();
+  if (judge.only_end) {
+    const Trial& seen = runs_.make(*judge.method, judge.value);
+    if (seen.reached_end()) condition(seen, accuracy);
+    return;
+  }
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
   if (stage.rests()) return condition_rest(judge);

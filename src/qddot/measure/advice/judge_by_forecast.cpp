@@ -78,7 +78,7 @@ std::optional<Candidate> Search::explicit_candidate(double error, const Method* 
   std::optional<Candidate> best;
   double least = INFINITY;
   for (const Candidate& c : forecast_->candidates(error)) {
-    if (!is_forecast_by_frequency(*c.method) || runs_.has(*c.method, c.value)) continue;
+    if (!is_forecast_by_frequency(*c.method) || runs_.find(*c.method, c.value)) continue;
     const double doubt = checked ? forecast_->doubt(*c.method, *checked) : 1;
     const auto own = doubt > 1 ? forecast_->candidate(*c.method, error / doubt) : c;
     // Largest steps are limited, and whole numbers of steps rounded.

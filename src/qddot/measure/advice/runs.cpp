@@ -56,14 +56,23 @@ const Trial& Runs::make_pushed(const Method& method, double value, const Push& p
   return all_.back();
 }
 
-const Trial* Runs::find(const Method& method, double value, bool is_pushed) const {
+bool Runs::is_run(const Trial& trial, const Method& method, double value, bool is_pushed) const {
   // Knobs this near give the same error.
   const double same = rules().small * rules().small;
+  return trial.method == &method && trial.is_pushed == is_pushed &&
+         std::abs(trial.value / value - 1) < same;
+}
+
+const Trial* Runs::find(const Method& method, double value, bool is_pushed) const {
   const auto found = std::ranges::find_if(all_, [&](const Trial& trial) {
-    return trial.method == &method && trial.is_pushed == is_pushed &&
-           std::abs(trial.value / value - 1) < same;
+    return is_run(trial, method, value, is_pushed) && !trial.only_end;
   });
   return found == all_.end() ? nullptr : &*found;
+}
+
+bool Runs::has(const Method& method, double value) const {
+  return std::ranges::any_of(
+      all_, [&](const Trial& trial) { return is_run(trial, method, value, false); });
 }
 
 void Runs::look_within_steps(const Method& method, double value) {

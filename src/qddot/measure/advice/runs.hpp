@@ -22,9 +22,10 @@ class Runs {
   void time_again(const Trial& run);
   // Makes it from a start that is pushed.
   const Trial& make_pushed(const Method& method, double value, const Push& push = {});
-  // The run that was made before; nullptr if there is none.
+  // The run that was made before and seen at all looks; nullptr if there is none.
   const Trial* find(const Method& method, double value, bool is_pushed = false) const;
-  bool has(const Method& method, double value) const { return find(method, value) != nullptr; }
+  // Whether it was made before, and seen at its end at least.
+  bool has(const Method& method, double value) const;
 
   // Looks also within the steps of that run, which is none of these. Call before the first one.
   void look_within_steps(const Method& method, double value);
@@ -59,6 +60,8 @@ class Runs {
   double seconds_left() const;
 
  private:
+  bool is_run(const Trial& trial, const Method& method, double value, bool is_pushed) const;
+
   double limit_;
   std::chrono::steady_clock::time_point begin_ = clock_now();
   double bound_of_w_, parts_;

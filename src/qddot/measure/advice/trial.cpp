@@ -42,7 +42,7 @@ Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene
 
 Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
                       double value, const Limits& limits, const See& see_step) const {
-  Trial trial{.method = &method, .value = value};
+  Trial trial{.method = &method, .value = value, .only_end = limits.only_end};
   Options options = options_for(method, value, model);
   options.most_forces = limits.forces;
   const auto integrator = make_integrator(method, model.system(), options);

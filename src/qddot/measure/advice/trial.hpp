@@ -31,6 +31,7 @@ struct Trial {
   // and at the times of the stage.
   double energy_gap = 0, energy_gain = 0;
   bool is_pushed = false;  // began one rounding away, so it may check a run but be no answer
+  bool only_end = false;   // was not seen on the way
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
