@@ -69,6 +69,7 @@ BOOST_AUTO_TEST_CASE(a_step_too_long_for_numbers_is_shortened) {
   BOOST_TEST_REQUIRE(end.has_value());
   // The tolerance, in some 10^5 steps.
   BOOST_TEST(std::abs(model.energy(end->end) / model.energy(model.initial()) - 1) < 1e-5);
+  BOOST_TEST(make_reference(model, 20, seconds).certified.position < 1e-7);
 }
 
 BOOST_AUTO_TEST_CASE(scales_are_the_extremes_of_the_whole_motion) {

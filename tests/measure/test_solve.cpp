@@ -290,7 +290,7 @@ BOOST_AUTO_TEST_CASE(advice_holds_when_it_is_followed) {
       BOOST_TEST_CONTEXT(scene.name << " to " << advice.accuracy) {
         BOOST_TEST_REQUIRE(advice.take.has_value());
         BOOST_TEST(advice.margin() >= 1);
-        // Also a run whose looks ended steps: none is looked at here.
+        // SUNDIALS' methods end steps at looks, and are not looked at here.
         for (const auto& named : {advice.take, advice.sundials}) {
           if (!named) continue;
           BOOST_TEST(named->error <= advice.accuracy);

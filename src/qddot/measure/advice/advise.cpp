@@ -73,9 +73,8 @@ void try_sundials(Search& search, double accuracy, double seconds) {
         !method.stock_of.empty() || !applies_to(method, system) || method.order < 4 ||
         (system.has_massless() && !method.is(Trait::accepts_massless)))
       continue;
-    search.try_once(
-        method, std::clamp(tolerance * accuracy, 10 * least_accuracy, tolerance),
-        {.seconds = left, .only_end = search.runs().stage().of() == AccuracyOf::positions});
+    search.try_once(method, std::clamp(tolerance * accuracy, 10 * least_accuracy, tolerance),
+                    {.seconds = left, .only_end = true});
   }
 }
 

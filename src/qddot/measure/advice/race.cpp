@@ -112,15 +112,14 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
     // time.
     const double fewest = runs_.forces(*answer) * std::max(1.0, left / answer->seconds);
     const auto first = first_of_method(*answer, fewest, accuracy);
-    // What is expected to be much faster comes first: the others then take less time.
+    // A run that is expected to be much faster comes first: the others then take less time.
     const bool is_much_faster = next && rules_.doubt * next->seconds < answer->seconds;
     if (!next || (first && !is_much_faster && first->forces < next->forces)) next = first;
     if (!next) break;
     constexpr double of_clock = 1e-5;  // [s], the time to see that it is over
     // Looks would end steps that are longer than the time between them.
-    const Trial& trial = runs_.make(
-        *next->method, next->value,
-        {.seconds = seconds + of_clock, .only_end = runs_.stage().of() == AccuracyOf::positions});
+    const Trial& trial =
+        runs_.make(*next->method, next->value, {.seconds = seconds + of_clock, .only_end = true});
     forecast_->learn(check_);
     if (trial.seconds > rules_.doubt * answer->seconds || !check_.is_known(trial, accuracy))
       continue;

@@ -17,7 +17,7 @@ Search::Search(const ReducedScene& model, double until, AccuracyOf of, double se
 const Trial* Search::find(double accuracy) {
   const Trial* known = check_.fastest(accuracy);
   if (!known) {
-    // What a pair of runs showed for another accuracy is more than rounding.
+    // The distance of a pair, made for another accuracy, is more than the effect of rounding.
     check_.set({});
     judge(accuracy);
     known = check_.fastest(accuracy);

@@ -42,7 +42,9 @@ Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene
 
 Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
                       double value, const Limits& limits, const See& see_step) const {
-  Trial trial{.method = &method, .value = value, .only_end = limits.only_end};
+  Trial trial{.method = &method,
+              .value = value,
+              .only_end = limits.only_end && of_ == AccuracyOf::positions};
   Options options = options_for(method, value, model);
   options.most_forces = limits.forces;
   const auto integrator = make_integrator(method, model.system(), options);
@@ -54,7 +56,7 @@ Trial Stage::run_from(const ReducedScene& model, const State& start, const Metho
     trial.energy_gain = std::max(trial.energy_gain, gain);
     trial.energy_gap = std::max(trial.energy_gap, std::abs(gain));
   };
-  Observer each{limits.only_end ? std::vector{until_} : times_,
+  Observer each{trial.only_end ? std::vector{until_} : times_,
                 [&](const State& seen) { trial.path.push_back(seen); }, see_step};
   if (!each.step && of_ == AccuracyOf::energy) each.step = see_energy;
   trial.seconds = seconds_of(

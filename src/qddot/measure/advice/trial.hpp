@@ -48,7 +48,8 @@ struct Push {
 struct Limits {
   double seconds = std::numeric_limits<double>::infinity();
   std::int64_t forces = 0;  // evaluations of f; 0: no limit
-  bool only_end = false;    // no looks on the way, which end steps of some methods
+  // No looks on the way, as they end steps of some methods. Only positions do without them.
+  bool only_end = false;
 };
 
 // The motion that trials compute: a model up to a time, seen at random times. No motion can be in
