@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/measure/motion/error.hpp"
@@ -114,6 +117,25 @@ BOOST_AUTO_TEST_CASE(each_part_is_measured_by_its_own_motion) {
   fast.v = Vec{{0, 1e-11}};
   BOOST_TEST(errors_between(two, fast, start, 0, scales).velocity == 0.1,
              boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(positions_alone_have_the_same_error) {
+  const ReducedScene two(two_oscillators(6));
+  State swung = two.initial(), off = two.initial();
+  swung.q += Vec{{1, 1e-3}};
+  off.q += Vec{{1e-3, -2e-5}};
+  Scales scales;
+  extend(scales, two, two.initial());
+  extend(scales, two, swung);
+  const double error = errors_between(two, off, two.initial(), 0, scales).position;
+  BOOST_TEST(error == 2e-2, boost::test_tools::tolerance(1e-9));  // of the second part
+  BOOST_TEST(position_error(two, off, two.initial(), scales) == error,
+             boost::test_tools::tolerance(1e-9));
+  off.q[1] = std::numeric_limits<double>::quiet_NaN();
+  BOOST_TEST(std::isnan(position_error(two, off, two.initial(), scales)));
+  std::swap(off.q[0], off.q[1]);
+  BOOST_TEST(std::isnan(position_error(two, off, two.initial(), scales)));
+  BOOST_TEST(std::isnan(errors_between(two, off, two.initial(), 0, scales).position));
 }
 
 BOOST_AUTO_TEST_CASE(a_part_that_only_rounds_is_measured_by_the_others) {

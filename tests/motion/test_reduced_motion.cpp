@@ -1,6 +1,9 @@
 // The motion of a scene in a plane, on a line or in its mirrors is that of the scene in space.
+#include <random>
+
 #include <boost/test/unit_test.hpp>
 
+#include "tests/independent/random_scene.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
@@ -56,6 +59,42 @@ BOOST_AUTO_TEST_CASE(implicit_steps_are_the_same_too) {
     const double apart = farthest(end({}), end(Reductions::only({})));
     BOOST_TEST(apart / farthest(end({}), cloth.nodes) < 1e-9, name);
   }
+}
+
+BOOST_AUTO_TEST_CASE(unknowns_tell_how_far_nodes_are_apart) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  int seen = 0, with_mirrors = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    const auto [scene, kind] = random_scene(seed);
+    const ReducedScene reduced(scene);
+    const auto parts = reduced.nodes_by_part();
+    State here = reduced.initial(), there = here;
+    for (double& q : there.q) q += normal(random);
+    for (double& v : there.v) v = normal(random);
+    const auto apart = reduced.largest_by_part(there.q - here.q),
+               speeds = reduced.largest_by_part(there.v);
+    // Springs in series are one spring, whose joints are no unknowns.
+    const bool has_joints = has(reduced, Reduction::massless);
+    BOOST_TEST(apart.size() == (has_joints ? 0 : parts.size()), kind << ", seed " << seed);
+    if (apart.empty()) continue;
+    const auto a = reduced.expand_beside_falls(here), b = reduced.expand_beside_falls(there);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      double distance = 0, speed = 0, extent = 1;
+      for (const std::size_t i : parts[p]) {
+        distance = std::max(distance, (b[i].position - a[i].position).norm());
+        speed = std::max(speed, b[i].velocity.norm());
+        extent = std::max(extent, b[i].position.norm());
+      }
+      // Rotations and sums round some times.
+      BOOST_TEST(std::abs(apart[p] - distance) <= 16 * 0x1p-52 * extent, kind << ", seed " << seed);
+      BOOST_TEST(std::abs(speeds[p] - speed) <= 16 * 0x1p-52 * speed, kind << ", seed " << seed);
+      with_mirrors += reduced.parts()[p].mirrors().count > 0;
+      ++seen;
+    }
+  }
+  BOOST_TEST(seen > 1000, seen);
+  BOOST_TEST(with_mirrors > 100, with_mirrors);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

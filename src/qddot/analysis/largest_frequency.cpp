@@ -17,22 +17,30 @@ constexpr Index most_dense = 40;
 
 // -M^-1/2 K M^-1/2 over the square of the bound, so that no eigenvalue is above 1. A massless
 // unknown has no stiffness here.
-SymmetricMatrix scaled(const System& system, const Vec& q, double bound) {
+void scale(const Vec& mass, double bound, SymmetricMatrix& k) {
+  const Vec factors =
+      (mass.array() > 0).select(mass.cwiseSqrt().cwiseInverse() / bound, Vec::Zero(k.rows()));
+  for (Index j = 0; j < k.cols(); ++j) {
+    for (SymmetricMatrix::InnerIterator entry(k, j); entry; ++entry)
+      entry.valueRef() *= -factors[entry.row()] * factors[j];
+  }
+}
+
+SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
+  require_stiffness(system);
   SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
-  const Vec scale =
-      (system.mass().array() > 0)
-          .select(system.mass().cwiseSqrt().cwiseInverse() / bound, Vec::Zero(k.rows()));
-  k = -(scale.asDiagonal() * k * scale.asDiagonal());
   return k;
 }
 
 }  // namespace
 
 double largest_frequency(const System& system, const Vec& q) {
-  const double bound = frequency_bound(system, q);
+  SymmetricMatrix k = stiffness_at(system, q);
+  Vec row_sums;
+  const double bound = frequency_bound(system.mass(), k, row_sums);
   if (bound == 0 || std::isinf(bound)) return bound;
-  const SymmetricMatrix k = scaled(system, q, bound);
+  scale(system.mass(), bound, k);
   if (k.rows() <= most_dense) {
     const double top = dense_values(Eigen::MatrixXd(k)).maxCoeff();
     return bound * std::sqrt(std::max(top, 0.0));
@@ -41,12 +49,14 @@ double largest_frequency(const System& system, const Vec& q) {
   return bound * std::sqrt(std::max(leading_value(apply, k.rows(), relative_error), 0.0));
 }
 
-double frequency_at_least(const System& system, const Vec& q) {
-  const double bound = frequency_bound(system, q);
+double frequency_at_least(const System& system, const Vec& q, Index products) {
+  SymmetricMatrix k = stiffness_at(system, q);
+  Vec row_sums;
+  const double bound = frequency_bound(system.mass(), k, row_sums);
   if (bound == 0 || std::isinf(bound)) return bound;
-  const SymmetricMatrix k = scaled(system, q, bound);
+  scale(system.mass(), bound, k);
   // Lanczos' recurrence from a random vector; rounding makes no value larger.
-  const Index steps = std::min<Index>(30, k.rows());
+  const Index steps = std::min(products, k.rows());
   Vec before = Vec::Zero(k.rows()), now(k.rows());
   std::minstd_rand random(1);
   for (double& x : now) x = static_cast<double>(random()) / random.max() - 0.5;
@@ -81,9 +91,7 @@ double quick_frequency(const System& system, const Vec& q) {
 }
 
 double frequency_bound(const System& system, const Vec& q) {
-  require_stiffness(system);
-  SymmetricMatrix k = system.stiffness_pattern();
-  system.stiffness(q, k);
+  const SymmetricMatrix k = stiffness_at(system, q);
   Vec row_sums;
   return frequency_bound(system.mass(), k, row_sums);
 }

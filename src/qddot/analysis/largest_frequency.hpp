@@ -12,9 +12,10 @@ namespace qddot {
 // std::invalid_argument if the system has no K.
 double largest_frequency(const System& system, const Vec& q);
 
-// A lower bound of w_max [rad/s] at q (n), mostly within some percent, for at most 30 products with
-// K. Throws std::invalid_argument if the system has no K.
-double frequency_at_least(const System& system, const Vec& q);
+// A lower bound of w_max [rad/s] at q (n) by so many products with K. Over the scenes of the advice
+// study it is below w_max by at most 0.35 % after 30 products, and by 0.7 % after 15. Throws
+// std::invalid_argument if the system has no K.
+double frequency_at_least(const System& system, const Vec& q, Index products = 30);
 
 // Whether the system is small enough for a quick Lanczos search: up to 6000 unknowns.
 bool is_quickly_searched(const System& system);

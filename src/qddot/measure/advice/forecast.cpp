@@ -25,7 +25,8 @@ double power_of_error(const Method& method) { return method.knob == Knob::rtol ?
 Forecast::Forecast(const Runs& runs, const std::vector<State>& path, double w_motion)
     : runs_(runs),
       rules_(runs.rules()),
-      own_(own_frequencies(runs.stage().model(), path, w_motion, static_cast<int>(rules_.places))),
+      own_(own_frequencies(runs.stage().model(), path, w_motion,
+                           static_cast<int>(runs.places(OwnFrequencies::forces_a_burst)))),
       w_motion_(w_motion),
       force_seconds_(seconds_of_force(runs.stage().model())),
       sensitivity_(own_.speed * runs.stage().until()),

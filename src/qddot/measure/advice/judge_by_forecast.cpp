@@ -13,8 +13,9 @@
 namespace qddot::inline measure {
 namespace {
 
-// The factor by which w_max grows over the path, from the growth of its bound at some places: a
-// bound costs as much as about 17 forces.
+constexpr double forces_a_bound = 17;  // the measured cost of frequency_bound
+
+// The factor by which w_max grows over the path, from the growth of its bound at some places.
 double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
                            std::size_t places) {
   if (model.system().stiffness_is_constant() || !(bound > 0)) return 1;
@@ -43,9 +44,10 @@ const Method& of_fewest_forces(const System& system) {
 const Trial* Search::survey() {
   const Method& method = of_fewest_forces(system_);
   const double bound = runs_.bound_of_w(), limit = linear_limit(method);
-  // Products with K give a value that is some percent too small. Forces that push away from the
+  // Few products with K give a value that is a percent too small. Forces that push away from the
   // start bring no frequency; the motion is then as fast as the bound.
-  w_start_ = std::min(bound, frequency_at_least(system_, model_.initial().q));
+  constexpr Index few = 15;
+  w_start_ = std::min(bound, frequency_at_least(system_, model_.initial().q, few));
   if (w_start_ < rules_.small * bound) w_start_ = bound;
   double steps =
       std::max(rules_.places, std::ceil(until_ * w_start_ / (limit * rules_.clearly_below)));
@@ -136,8 +138,8 @@ bool Search::judge_by_forecast(double accuracy) {
   const Trial* first = survey();
   if (!first) return false;
   runs_.measure_by(*first);
-  const double growth = growth_of_frequency(model_, first->path, runs_.bound_of_w(),
-                                            static_cast<std::size_t>(rules_.places));
+  const double growth =
+      growth_of_frequency(model_, first->path, runs_.bound_of_w(), runs_.places(forces_a_bound));
   // The bound of w_max may grow more than w_max does. The run was stable.
   forecast_.emplace(runs_, first->path,
                     std::min(w_start_ * growth, linear_limit(*first->method) / first->value));

@@ -150,6 +150,12 @@ bool Search::judge_in_closed_form(double accuracy) {
   return error <= accuracy;
 }
 
+// Whether the cost of implicit steps is known, or takes less than so many forces to find.
+bool Search::may_analyse(double forces) const {
+  const double entries = static_cast<double>(system_.stiffness_pattern().nonZeros());
+  return implicit_force_ || rules_.analysis * entries < forces * runs_.work_of_force();
+}
+
 // The explicit forces that take as long as an implicit step.
 double Search::forces_of_implicit_step(int order) {
   if (!implicit_force_) {
@@ -172,7 +178,8 @@ std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
                fewest = rules_.places * all.front()->order;
   // Factors have at least the entries of K.
   const double entries = static_cast<double>(system_.stiffness_pattern().nonZeros());
-  if (most < fewest * (rules_.implicit_force + rules_.entry * entries / runs_.work_of_force()))
+  if (!may_analyse(most) ||
+      most < fewest * (rules_.implicit_force + rules_.entry * entries / runs_.work_of_force()))
     return 0;
   const double worth = most / forces_of_implicit_step(1);
   return worth > fewest ? static_cast<std::int64_t>(worth) : 0;

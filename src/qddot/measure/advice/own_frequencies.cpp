@@ -9,7 +9,7 @@
 namespace qddot::inline measure {
 namespace {
 
-constexpr int burst_steps = OwnFrequencies::highest_order + 2;
+constexpr int burst_steps = OwnFrequencies::forces_a_burst;
 constexpr double burst_h_omega = 0.5;
 
 // Positions at the start and after each step of a burst; fewer if the burst failed.

@@ -15,6 +15,7 @@ namespace qddot::inline measure {
 // w_max. If the motion has fast vibrations of small amplitude, w_p grows with p.
 struct OwnFrequencies {
   static constexpr int highest_order = 10;
+  static constexpr int forces_a_burst = highest_order + 2;
 
   std::array<double, highest_order + 1> of_order{};  // w_1 ... w_10; of_order[0] means nothing
   double speed = 0;  // |q'| over the largest |q - q(0)| [1/s]; 0 if nothing moves
@@ -25,7 +26,7 @@ struct OwnFrequencies {
 
 // Estimates the frequencies from `bursts` short bursts of Verlet's method, each of twelve steps at
 // h w_max = 1/2. They begin at the start and at some states of `path`; p-th differences of
-// positions give the derivatives. Costs twelve forces a burst. `w_max`: the largest frequency
+// positions give the derivatives. `w_max`: the largest frequency
 // [rad/s].
 OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
                                double w_max, int bursts);

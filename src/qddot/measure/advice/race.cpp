@@ -28,8 +28,10 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double few
                                                  double accuracy) {
   std::optional<Candidate> cheapest;
   const bool is_held_back = check_.bound(answer)->error <= rules_.small * accuracy;
+  const bool may_be_implicit =
+      system_.has_stiffness() && may_analyse(rules_.part_of_answer * fewest);
   const double few =
-      is_held_back && system_.has_stiffness()
+      is_held_back && may_be_implicit
           ? std::floor(rules_.small * runs_.forces(answer) / forces_of_implicit_step(2))
           : 0;
   for (const Method& method : methods()) {
@@ -37,7 +39,7 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double few
     if (is_forecast_by_frequency(method) || method.order < 2 || !applies_to(method, system_) ||
         method.family == Family::sundials || method.asks(Need::laplacian) ||
         (system_.has_massless() && !method.is(Trait::accepts_massless)) ||
-        (is_implicit && runs_.stage().of() == AccuracyOf::energy))
+        (is_implicit && (!may_be_implicit || runs_.stage().of() == AccuracyOf::energy)))
       continue;
     const bool splits = method.asks(Need::split_forces);
     // Stiff forces are evaluated as often as by Verlet's method.

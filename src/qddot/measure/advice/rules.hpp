@@ -44,6 +44,8 @@ struct Rules {
   // many forces, and for each entry of the factors a part of the force on an unknown. Operations
   // of a factorisation are faster than that.
   double implicit_force = 3, entry = 0.1, operation = 5e-4;
+  // The analysis of factors takes for each entry of K as long as the force on so many unknowns.
+  double analysis = 10;
 
   // The check of a run with fixed steps has an error that is expected to be smaller by this factor.
   double finer = 4;
@@ -63,7 +65,7 @@ struct Rules {
 };
 
 // Each rule with its name.
-inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 24> all_rules = {{
+inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 25> all_rules = {{
     {"doubt", &Rules::doubt},
     {"small", &Rules::small},
     {"clearly_below", &Rules::clearly_below},
@@ -82,6 +84,7 @@ inline constexpr std::array<std::pair<std::string_view, double Rules::*>, 24> al
     {"implicit_force", &Rules::implicit_force},
     {"entry", &Rules::entry},
     {"operation", &Rules::operation},
+    {"analysis", &Rules::analysis},
     {"finer", &Rules::finer},
     {"rounds", &Rules::rounds},
     {"unrelated_orders", &Rules::unrelated_orders},

@@ -10,28 +10,40 @@
 
 namespace qddot::inline measure {
 
+namespace {
+
+// Rules with fewer looks at a motion of which the end counts, where steps are few and take long: a
+// look costs some forces, seventeen by methods of high order.
+Rules with_few_looks(Rules rules, double steps, double work_of_force) {
+  constexpr double fewest = 6;
+  if (steps * work_of_force > rules.small * rules.little_work)
+    rules.looks = std::min(rules.looks, std::max(fewest, rules.small * rules.small * steps));
+  return rules;
+}
+
+}  // namespace
+
 Runs::Runs(const ReducedScene& model, double until, AccuracyOf of, double seconds,
            const Scene* drawn, const Rules& rules)
     : limit_(seconds),
       bound_of_w_(frequency_bound(model.system(), model.initial().q)),
+      steps_of_verlet_(std::isfinite(bound_of_w_) ? std::max(1.0, until * bound_of_w_ / 2) : 1),
       parts_(static_cast<double>(std::max<std::size_t>(1, blocks_of(model.system()).size()))),
-      stage_(model, until, of, drawn, rules) {}
-
-double Runs::steps_of_verlet() const {
-  return std::isfinite(bound_of_w_) ? std::max(1.0, stage_.until() * bound_of_w_ / 2) : 1;
-}
-
-double Runs::work_of_force() const {
-  return rules().call * parts_ + static_cast<double>(stage_.model().system().size());
-}
+      work_of_force_(rules.call * parts_ + static_cast<double>(model.system().size())),
+      stage_(model, until, of, drawn, with_few_looks(rules, steps_of_verlet_, work_of_force_)) {}
 
 double Runs::forces(const Trial& trial) const {
   return static_cast<double>(trial.summary.counts.force_evaluations) / parts_;
 }
 
+std::size_t Runs::places(double forces) const {
+  return static_cast<std::size_t>(
+      std::clamp(rules().small * steps_of_verlet() / forces, 2.0, std::max(2.0, rules().places)));
+}
+
 std::int64_t Runs::forces_within(double work) const {
   constexpr double fewest = 100;  // any run takes some
-  return static_cast<std::int64_t>(std::max(fewest, work / work_of_force()));
+  return static_cast<std::int64_t>(std::max(fewest, work / work_of_force_));
 }
 
 double Runs::seconds_left() const {

@@ -46,14 +46,17 @@ class Runs {
   const Rules& rules() const { return stage_.rules(); }
   // Bounds of the largest frequency at the start [rad/s], and of the steps of Verlet's method.
   double bound_of_w() const { return bound_of_w_; }
-  double steps_of_verlet() const;
+  double steps_of_verlet() const { return steps_of_verlet_; }
   // The work of evaluating f once, and how often a run did: the mean over its parts.
-  double work_of_force() const;
+  double work_of_force() const { return work_of_force_; }
   double forces(const Trial& trial) const;
   // Whether the run reached the end with no more energy than an accurate one may gain.
   bool is_sound(const Trial& trial) const {
     return trial.reached_end() && trial.summary.energy_growth < rules().doubt;
   }
+  // The number of places at which a motion is looked at if each look costs so many forces. Together
+  // they cost a small part of Verlet's run, beside two of them.
+  std::size_t places(double forces) const;
   // The number of forces that are so much work.
   std::int64_t forces_within(double work) const;
   double seconds() const { return seconds_since(begin_); }
@@ -64,7 +67,7 @@ class Runs {
 
   double limit_;
   std::chrono::steady_clock::time_point begin_ = clock_now();
-  double bound_of_w_, parts_;
+  double bound_of_w_, steps_of_verlet_, parts_, work_of_force_;
   Stage stage_;
   std::deque<Trial> all_;
   mutable std::map<std::pair<const Trial*, const Trial*>, double> distances_;  // by these scales

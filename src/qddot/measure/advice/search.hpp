@@ -62,6 +62,7 @@ class Search {
   bool judge_energy(double accuracy);
 
   std::vector<const Method*> with_error_control(bool implicitly, double accuracy) const;
+  bool may_analyse(double forces) const;
   double forces_of_implicit_step(int order);
   std::int64_t forces_worth_implicit_steps(double accuracy);
   const Trial* survey();

@@ -183,13 +183,13 @@ double Stage::energy_rounding(const Trial& trial) const {
 double Stage::distance(const Trial& one, const Trial& other) const {
   // Between the looks the largest distance may be larger.
   if (of_ == AccuracyOf::path) return rules_.doubt * std::ranges::max(distances(one, other));
-  return errors_between(model_, one.path.back(), other.path.back(), 0, scales_).position;
+  return position_error(model_, one.path.back(), other.path.back(), scales_);
 }
 
 std::vector<double> Stage::distances(const Trial& one, const Trial& other) const {
   std::vector<double> all;
   for (std::size_t i = 0; i < std::min(one.path.size(), other.path.size()); ++i)
-    all.push_back(errors_between(model_, one.path[i], other.path[i], 0, scales_).position);
+    all.push_back(position_error(model_, one.path[i], other.path[i], scales_));
   return all;
 }
 
@@ -224,9 +224,11 @@ std::vector<double> Stage::distances_as_drawn(const Trial& trial, const Method& 
   if (!applies_to(method, drawn.system())) return all;
   const Trial pushed = run_from(drawn, drawn.initial(), method, value, limits);
   if (!pushed.reached_end()) return all;
+  std::vector<Node> nodes, expected;
   for (std::size_t i = 0; i < times_.size(); ++i) {
-    all.push_back(
-        position_error(drawn.expand(pushed.path[i]), model_.expand(trial.path[i]), scales_));
+    drawn.expand(pushed.path[i], nodes);
+    model_.expand(trial.path[i], expected);
+    all.push_back(position_error(nodes, expected, scales_));
   }
   return all;
 }

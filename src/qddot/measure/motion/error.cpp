@@ -15,7 +15,7 @@ double divided(double error, double scale) { return scale > 0 ? error / scale : 
 
 // Raises `largest` to x if x is larger or not a number.
 void raise(double& largest, double x) {
-  if (!(x <= largest)) largest = x;
+  if (x > largest || std::isnan(x)) largest = x;
 }
 
 // The largest |a_i - b_i| of the positions or velocities of some nodes.
@@ -79,13 +79,21 @@ double Scales::speed_of(const PartScale& part) const {
 }
 
 void extend(Scales& scales, const ReducedScene& scene, const State& state) {
-  const auto start = measured(scene, scene.initial()), now = measured(scene, state);
-  if (scales.parts.empty()) scales.parts = parts_of(scene, start);
-  for (PartScale& part : scales.parts) {
-    part.displacement =
-        std::max(part.displacement, largest_difference(part.nodes, now, start, &Node::position));
-    for (const std::size_t i : part.nodes)
-      part.speed = std::max(part.speed, now[i].velocity.norm());
+  if (scales.parts.empty()) scales.parts = parts_of(scene, measured(scene, scene.initial()));
+  std::vector<double> displacements = scene.largest_by_part(state.q - scene.initial().q),
+                      speeds = scene.largest_by_part(state.v);
+  if (displacements.empty()) {
+    const auto start = measured(scene, scene.initial()), now = measured(scene, state);
+    for (const PartScale& part : scales.parts) {
+      displacements.push_back(largest_difference(part.nodes, now, start, &Node::position));
+      double& speed = speeds.emplace_back(0);
+      for (const std::size_t i : part.nodes) raise(speed, now[i].velocity.norm());
+    }
+  }
+  for (std::size_t p = 0; p < scales.parts.size(); ++p) {
+    PartScale& part = scales.parts[p];
+    part.displacement = std::max(part.displacement, displacements[p]);
+    part.speed = std::max(part.speed, speeds[p]);
     scales.displacement = std::max(scales.displacement, part.displacement);
     scales.speed = std::max(scales.speed, part.speed);
   }
@@ -98,6 +106,17 @@ double position_error(const std::vector<Node>& nodes, const std::vector<Node>& r
                       const Scales& scales) {
   return largest_error(nodes, reference, &Node::position, scales, scales.displacement,
                        &Scales::displacement_of);
+}
+
+double position_error(const ReducedScene& scene, const State& state, const State& reference,
+                      const Scales& scales) {
+  const std::vector<double> differences = scene.largest_by_part(state.q - reference.q);
+  if (differences.size() != scales.parts.size() || differences.empty())
+    return position_error(measured(scene, state), measured(scene, reference), scales);
+  double largest = 0;
+  for (std::size_t p = 0; p < differences.size(); ++p)
+    raise(largest, divided(differences[p], scales.displacement_of(scales.parts[p])));
+  return largest;
 }
 
 double velocity_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,

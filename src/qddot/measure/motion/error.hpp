@@ -53,6 +53,9 @@ void extend(Scales& scales, const ReducedScene& scene, const State& state);
 Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
                       double energy, const Scales& scales);
 
+// The position error alone, by scales of the same reduction of the scene.
+double position_error(const ReducedScene& scene, const State& state, const State& reference,
+                      const Scales& scales);
 // The position error and the velocity error alone, over all nodes of the scene.
 double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,
                       const Scales& scales);

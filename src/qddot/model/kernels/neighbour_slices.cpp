@@ -1,6 +1,7 @@
 #include "qddot/model/kernels/neighbour_slices.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace qddot::kernels {
@@ -11,7 +12,17 @@ constexpr double cost_of_gather = 1.6;
 // Rows are sorted within windows of this size; across more, positions are far apart in memory.
 constexpr int window = 256;
 
-using Rows = std::vector<std::vector<Neighbour>>;  // by places
+using Rows = std::array<std::vector<Neighbour>, slice_rows>;  // by places
+using Laws = std::array<SpringLaw, slice_rows>;
+
+// Sorts the few neighbours of a row, equal ones in the order they had.
+void sort_by_place(std::vector<Neighbour>& row) {
+  for (auto next = row.begin(); next != row.end(); ++next) {
+    const auto place =
+        std::ranges::upper_bound(row.begin(), next, next->point, {}, &Neighbour::point);
+    std::rotate(place, next, next + 1);
+  }
+}
 
 class Slicer {
  public:
@@ -37,9 +48,9 @@ class Slicer {
   NeighbourSlices slice() {
     for (int row = 0; row < result_.rows(); row += slice_rows) {
       begin_slice();
-      Rows rows = rows_from(row);
-      take_shifts(row, rows);
-      take_gathers(row, rows);
+      take_rows(row);
+      take_shifts(row, rows_);
+      take_gathers(row, rows_);
     }
     begin_slice();
     result_.laws = Eigen::Map<const Vec>(laws_.data(), std::ssize(laws_));
@@ -55,15 +66,14 @@ class Slicer {
                               static_cast<int>(result_.gathers.size()), std::ssize(laws_)});
   }
 
-  Rows rows_from(int first) const {
-    Rows rows(slice_rows);
+  void take_rows(int first) {
     for (int t = 0; t < slice_rows; ++t) {
+      rows_[t].clear();
       if (result_.node[first + t] < 0) continue;
-      rows[t] = neighbours_[result_.node[first + t]];
-      for (Neighbour& neighbour : rows[t]) neighbour.point = place_[neighbour.point];
-      std::ranges::stable_sort(rows[t], {}, &Neighbour::point);
+      rows_[t] = neighbours_[result_.node[first + t]];
+      for (Neighbour& neighbour : rows_[t]) neighbour.point = place_[neighbour.point];
+      sort_by_place(rows_[t]);
     }
-    return rows;
   }
 
   // Slots of one shift, as long as enough rows have a neighbour there.
@@ -71,17 +81,17 @@ class Slicer {
     bool found = true;
     while (found) {
       found = false;
-      std::vector<int> shifts;
+      shifts_.clear();
       for (int t = 0; t < slice_rows; ++t) {
         for (std::size_t e = 0; e < rows[t].size(); ++e) {
           if (e > 0 && rows[t][e].point == rows[t][e - 1].point) continue;
-          shifts.push_back(rows[t][e].point - first - t);
+          shifts_.push_back(rows[t][e].point - first - t);
         }
       }
-      std::ranges::sort(shifts);
-      for (auto next = shifts.begin(); next != shifts.end();) {
+      std::ranges::sort(shifts_);
+      for (auto next = shifts_.begin(); next != shifts_.end();) {
         const int shift = *next;
-        const auto end = std::upper_bound(next, shifts.end(), shift);
+        const auto end = std::upper_bound(next, shifts_.end(), shift);
         const bool is_within = first + shift >= 0 && first + shift + slice_rows <= result_.places;
         if (end - next >= enough_rows && is_within) {
           take_shift(first, shift, rows);
@@ -94,7 +104,7 @@ class Slicer {
 
   void take_shift(int first, int shift, Rows& rows) {
     result_.shifts.push_back(shift);
-    std::vector<SpringLaw> laws(slice_rows);
+    Laws laws{};
     for (int t = 0; t < slice_rows; ++t) {
       const auto found = std::ranges::find(rows[t], first + t + shift, &Neighbour::point);
       if (found == rows[t].end()) continue;
@@ -113,7 +123,7 @@ class Slicer {
       int longest = 0;
       while (e >= rows[longest].size()) ++longest;
       const int other = rows[longest][e].point;
-      std::vector<SpringLaw> laws(slice_rows);
+      Laws laws{};
       for (int t = 0; t < slice_rows; ++t) {
         const bool has_one = e < rows[t].size();
         const int place = has_one ? rows[t][e].point : other != first + t ? other : first + longest;
@@ -125,7 +135,7 @@ class Slicer {
     }
   }
 
-  void append(const std::vector<SpringLaw>& laws) {
+  void append(const Laws& laws) {
     for (const SpringLaw& law : laws) laws_.push_back(law.stiffness);
     if (result_.law_vectors > 1) {
       for (const SpringLaw& law : laws) laws_.push_back(law.rest_length);
@@ -138,6 +148,8 @@ class Slicer {
   const std::vector<std::vector<Neighbour>>& neighbours_;
   std::vector<int> place_;  // of each point
   std::vector<double> laws_;
+  Rows rows_;
+  std::vector<int> shifts_;
   NeighbourSlices result_;
 };
 

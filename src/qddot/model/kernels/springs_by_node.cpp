@@ -10,7 +10,10 @@ namespace qddot::kernels {
 template <int D>
 SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout) {
   const int nodes = static_cast<int>(layout.nodes());
+  std::vector<int> springs(nodes);
+  for (const auto& link : network.links) ++springs[link.i], ++springs[link.j];
   std::vector<std::vector<Neighbour>> neighbours(nodes);
+  for (int i = 0; i < nodes; ++i) neighbours[i].reserve(springs[i]);
   for (const auto& link : network.links) {
     neighbours[link.i].push_back({link.j, link.law});
     neighbours[link.j].push_back({link.i, link.law});

@@ -1,5 +1,7 @@
 #include "qddot/scene/reduce/part.hpp"
 
+#include <cmath>
+
 #include "qddot/model/constrained_system.hpp"
 #include "qddot/scene/reduce/folded_part.hpp"
 #include "qddot/scene/reduce/straight.hpp"
@@ -143,6 +145,15 @@ void Part::expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v
     nodes[nodes_[i]].position = origin_ + now.x + displacement;
     nodes[nodes_[i]].velocity = now.v + velocity;
   }
+}
+
+double Part::largest(const Eigen::Ref<const Vec>& x) const {
+  double square = 0;
+  for (const Unknowns& unknowns : layout_) {
+    const double own = x.segment(unknowns.first, unknowns.count).squaredNorm();
+    if (own > square || std::isnan(own)) square = own;
+  }
+  return std::sqrt(square);
 }
 
 Part::Moments Part::moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const {

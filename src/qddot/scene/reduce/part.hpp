@@ -50,6 +50,9 @@ class Part {
   void expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
               const Eigen::Vector3d& displacement, const Eigen::Vector3d& velocity,
               std::vector<Node>& nodes) const;
+  // The largest |x_i| of a node, for velocities or a difference of positions in its unknowns: axes
+  // and signs change no length.
+  double largest(const Eigen::Ref<const Vec>& x) const;
   // S = sum m y [kg m] in the scene's coordinates and P = sum m y' [kg m/s] of its nodes (see
   // Fall).
   struct Moments {

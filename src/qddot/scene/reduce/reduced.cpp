@@ -1,6 +1,7 @@
 #include "qddot/scene/reduce/reduced.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -264,6 +265,23 @@ void Reduced::expand_own(const State& state, std::vector<Node>& nodes) const {
     node.velocity.head(dimension_) = state.v.segment(at, dimension_);
     at += dimension_;
   }
+}
+
+std::vector<double> Reduced::largest_by_part(const Vec& x) const {
+  if (is_own_) {
+    if (x.size() == 0) return {};
+    return {std::sqrt(
+        x.reshaped(dimension_, x.size() / dimension_).colwise().squaredNorm().maxCoeff())};
+  }
+  std::vector<double> largest;
+  if (!series_.empty()) return largest;
+  Index at = 0;
+  for (const Part& part : parts_) {
+    const Index n = part.initial().q.size();
+    largest.push_back(part.largest(x.segment(at, n)));
+    at += n;
+  }
+  return largest;
 }
 
 std::vector<std::vector<std::size_t>> Reduced::nodes_by_part() const {

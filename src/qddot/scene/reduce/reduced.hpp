@@ -30,6 +30,7 @@ class Reduced {
   // Does ReducedScene::expand if `falls`, else expand_beside_falls. `nodes`: empty, or the result
   // of an earlier call.
   void expand(const State& state, bool falls, std::vector<Node>& nodes) const;
+  std::vector<double> largest_by_part(const Vec& x) const;
   double kinetic(const State& state) const;
   double potential(const State& state) const;
   double energy(const State& state) const;

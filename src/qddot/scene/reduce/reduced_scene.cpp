@@ -31,6 +31,9 @@ std::vector<Node> ReducedScene::expand_beside_falls(const State& state) const {
   reduced_->expand(state, false, nodes);
   return nodes;
 }
+std::vector<double> ReducedScene::largest_by_part(const Vec& x) const {
+  return reduced_->largest_by_part(x);
+}
 double ReducedScene::kinetic(const State& state) const { return reduced_->kinetic(state); }
 double ReducedScene::potential(const State& state) const { return reduced_->potential(state); }
 double ReducedScene::energy(const State& state) const { return reduced_->energy(state); }

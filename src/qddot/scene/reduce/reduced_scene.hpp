@@ -60,6 +60,10 @@ class ReducedScene {
   // The same without motions in closed form. Parts are seen from the frames that fall with them;
   // other nodes rest where they started. This measures only what is integrated.
   std::vector<Node> expand_beside_falls(const State& state) const;
+  // The largest |x_i| over the nodes of each part, in the order of nodes_by_part(). x: n,
+  // velocities or a difference of positions, which are the same beside any fall. Empty if nodes are
+  // condensed, as theirs are no linear functions of x, or if there are no unknowns.
+  std::vector<double> largest_by_part(const Vec& x) const;
   // Energies [J] of all nodes and springs of the scene; weights of pinned nodes do not count.
   double kinetic(const State& state) const;
   double potential(const State& state) const;
