@@ -31,7 +31,7 @@ SENSIBLE = NEEDED | {
     "--solver": ["automatic", "multifrontal", "cholmod", "conjugate_gradients"],
     "--solvers": ["multifrontal", "cholmod", "multifrontal,conjugate_gradients"],
     "--accuracy": (1e-6, 0.1), "--accuracy-of": ["positions", "path", "energy"],
-    "--first": ["20000000", "20000002"], "--steps": ["1e-4", "2e-4,1e-4"],
+    "--first": ["22000000", "22000002"], "--steps": ["1e-4", "2e-4,1e-4"],
 }
 OF_A_PROGRAM = {
     ("symmetric_roots", "--at"): (0.1, 1), ("crossover", "--nodes"): ["9", "10"],

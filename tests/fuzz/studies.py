@@ -67,7 +67,7 @@ LONG_STUDIES = {
     " --point-limit 1000",
     "solvers": "--scene lattice --repeats 3",
     "verdicts": "--seeds 3 --cells 256",
-    "advice": "--cases 6 --first 20000000 --repeats 2 --reference-seconds 1",
+    "advice": "--cases 6 --first 22000000 --repeats 2 --reference-seconds 1",
     "bench": "larger.toml@0.02 --methods verlet,dprkn6 --repeats 1 --point-limit 1000 --peers"
     " odeint",
 }

@@ -146,12 +146,13 @@ bool Search::judge_by_forecast(double accuracy) {
   // A pair's bound of the coarser error is then clearly below the accuracy.
   const double aim = rules_.clearly_below * (1 - 1 / rules_.finer) / rules_.doubt * accuracy;
   const Trial* tried = first;
+  bool is_kept = false;  // whether it was a check and is to be checked itself
   std::optional<double> effect_on_first;
   for (int round = 0; round < static_cast<int>(rules_.rounds) && runs_.seconds_left() > 0;
        ++round) {
     const double unseen = round == 0 ? 1 : rules_.doubt;
     double error = forecast_->error(*tried->method, tried->value);
-    if (!(error <= aim)) {
+    if (!(error <= aim) && !is_kept) {
       const auto next = explicit_candidate(aim, nullptr, unseen);
       if (!next) return false;
       const Trial& trial = runs_.make(*next->method, next->value);
@@ -213,8 +214,9 @@ bool Search::judge_by_forecast(double accuracy) {
     const double unforeseen = round == 0 ? rules_.small * rules_.small : rules_.small;
     if (between > (round == 0 ? rules_.small : accuracy) && error < unforeseen * between)
       return false;
-    // The check may be the run that a finer one checks.
-    if (forecast_->error(*checked.method, checked.value) <= aim) tried = &checked;
+    // The check may be the run that a finer one checks, which may be the answer then.
+    is_kept = forecast_->error(*checked.method, checked.value) <= rules_.clearly_below * accuracy;
+    if (is_kept) tried = &checked;
   }
   return false;
 }

@@ -10,9 +10,20 @@
 
 namespace qddot::inline measure {
 
+// The run, or its beginning if that has little hope to reach the end with so many forces. A
+// beginning may need more steps than the rest.
+const Trial& Search::run_if_promising(const Method& method, double rtol, std::int64_t forces) {
+  const auto few = static_cast<std::int64_t>(rules_.small * static_cast<double>(forces));
+  const Trial& begun = runs_.make(method, rtol, {.forces = std::max<std::int64_t>(1, few)});
+  const bool may_reach = rules_.doubt_of_two() * begun.summary.t_reached > rules_.small * until_;
+  if (begun.summary.outcome != Outcome::over_budget || !may_reach) return begun;
+  return runs_.make(method, rtol, {.forces = forces});
+}
+
 // Three runs of one method with error control, at tolerances that fall by tens. If they draw
 // together, the finest is within the distance of the finer two.
-bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left) {
+bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left,
+                                bool is_last) {
   // Errors of implicit methods follow their tolerances less closely.
   const double doubt = method.is(Trait::implicit) ? rules_.doubt_of_two() : rules_.doubt;
   const Stage& stage = runs_.stage();
@@ -25,7 +36,9 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
         is_first ? std::max<std::int64_t>(1, forces_left / runs_of_three) : forces_left;
     const Trial* before = runs_.find(method, rtol);
     const bool is_new = !before || !before->reached_end();
-    const Trial& trial = is_new ? runs_.make(method, rtol, {.forces = most_forces}) : *before;
+    const Trial& trial = !is_new                ? *before
+                         : is_first && !is_last ? run_if_promising(method, rtol, most_forces)
+                                                : runs_.make(method, rtol, {.forces = most_forces});
     if (is_new) forces_left -= std::llround(runs_.forces(trial));
     if (!trial.path.empty()) runs_.measure_by(trial);
     if (!trial.reached_end()) {
@@ -96,7 +109,7 @@ std::vector<const Method*> Search::with_error_control(bool implicitly, double ac
 bool Search::judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces,
                                     bool is_last) {
   for (const Method* method : with_error_control(implicitly, accuracy)) {
-    if (judge_by_tolerance(*method, accuracy, most_forces)) return true;
+    if (judge_by_tolerance(*method, accuracy, most_forces, is_last)) return true;
     // A motion that rounding leaves unknown is so for all methods. What is too much work for one is
     // so for the next.
     const bool is_too_much = !is_last && !runs_.all().empty() &&

@@ -54,7 +54,8 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double few
       const auto bound = check_.bound(trial);
       is_known |= (bound && runs_.is_sound(trial) && bound->error < 1) ||
                   (method.knob == Knob::rtol && !was_over_budget) ||
-                  (was_over_budget && rules_.doubt * trial.seconds > answer.seconds);
+                  (was_over_budget && rules_.doubt * trial.seconds * until_ >
+                                          answer.seconds * trial.summary.t_reached);
     }
     if (is_known) continue;
     // The work of the run at least, in forces: a step of order p takes about p of them.

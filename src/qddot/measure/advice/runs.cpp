@@ -76,10 +76,11 @@ bool Runs::is_run(const Trial& trial, const Method& method, double value, bool i
 }
 
 const Trial* Runs::find(const Method& method, double value, bool is_pushed) const {
-  const auto found = std::ranges::find_if(all_, [&](const Trial& trial) {
+  // The last one had the largest limits.
+  const auto found = std::find_if(all_.rbegin(), all_.rend(), [&](const Trial& trial) {
     return is_run(trial, method, value, is_pushed) && !trial.only_end;
   });
-  return found == all_.end() ? nullptr : &*found;
+  return found == all_.rend() ? nullptr : &*found;
 }
 
 bool Runs::has(const Method& method, double value) const {

@@ -52,7 +52,9 @@ class Search {
   // Each finds a judge for the accuracy; false if it does not.
   bool judge(double accuracy);
   bool judge_in_closed_form(double accuracy);
-  bool judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left);
+  const Trial& run_if_promising(const Method& method, double rtol, std::int64_t forces);
+  bool judge_by_tolerance(const Method& method, double accuracy, std::int64_t& forces_left,
+                          bool is_last);
   bool judge_by_error_control(double accuracy, bool implicitly, std::int64_t most_forces,
                               bool is_last);
   bool judge_at_last(double accuracy, bool implicitly);
