@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/rules.hpp"
 #include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/rest.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 
 namespace qddot::judged_advice {
@@ -66,6 +68,9 @@ Scales scales_of(const ReducedScene& model, const Seen& fine, const TrueMotion& 
   if (fine.reached_end) {
     extend(scales, model, model.initial());
     for (const State& state : fine.path) extend(scales, model, state);
+    // As an answer has it, errors of what rests are relative to its size.
+    if (!scene.springs.empty()) reach_to_pins(scales, scene);
+    take_extents_at_rest(scales, Rules{}.rest);
     if (error_of(fine, model, truth, scales, AccuracyOf::path) < apart_enough) return scales;
     scales = {};
   }

@@ -7,6 +7,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/random_times.hpp"
+#include "qddot/measure/motion/rest.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/model/machine_epsilon.hpp"
@@ -127,32 +128,8 @@ void Stage::measure_by(const Trial& trial) {
   scales_ = {};
   extend(scales_, model_, model_.initial());
   for (const State& seen : trial.path) extend(scales_, model_, seen);
-  reach_to_pins();
-  rests_ = std::ranges::all_of(scales_.parts, [&](const PartScale& part) {
-    return part.displacement <= rules_.rest * machine_epsilon * part.extent;
-  });
-  if (!rests_) return;
-  // Errors of what rests are relative to its size.
-  for (PartScale& part : scales_.parts) {
-    part.displacement = part.extent;
-    scales_.displacement = std::max(scales_.displacement, part.extent);
-  }
-}
-
-// A force rounds as the ends of its spring do, so that a node near the origin is no more accurate
-// than the pins that hold it.
-void Stage::reach_to_pins() {
-  if (!drawn_) return;
-  const std::vector<Node>& nodes = drawn_->nodes;
-  std::vector<double> reach(nodes.size(), 0);
-  for (const Spring& spring : drawn_->springs) {
-    const auto [i, j] = spring.nodes;
-    if (nodes[j].pinned) reach[i] = std::max(reach[i], nodes[j].position.lpNorm<Eigen::Infinity>());
-    if (nodes[i].pinned) reach[j] = std::max(reach[j], nodes[i].position.lpNorm<Eigen::Infinity>());
-  }
-  for (PartScale& part : scales_.parts) {
-    for (const std::size_t i : part.nodes) part.extent = std::max(part.extent, reach[i]);
-  }
+  if (drawn_) reach_to_pins(scales_, *drawn_);
+  rests_ = take_extents_at_rest(scales_, rules_.rest);
 }
 
 double Stage::rounding() const {

@@ -115,7 +115,6 @@ class Stage {
   const Rules& rules() const { return rules_; }
 
  private:
-  void reach_to_pins();
   // The largest kinetic energy, or 1 J if nothing moves.
   double energy_scale() const;
   using See = std::function<void(const State&)>;
