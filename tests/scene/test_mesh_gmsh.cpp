@@ -94,7 +94,7 @@ BOOST_AUTO_TEST_CASE(every_element_has_the_edges_of_its_kind) {
 }
 
 BOOST_AUTO_TEST_CASE(other_elements_are_refused) {
-  for (const int type : {0, -1, 8, 9, 11, 14, 16, 92}) {
+  for (const int type : {0, -1, 22, 30, 34, 99, 140}) {
     const std::string message = refusal(one_element(type, 3));
     BOOST_TEST(names_all(message, {"a.msh:12:", "element type", std::to_string(type),
                                    "2 (triangle)", "15 (point)", "7 (pyramid)", "allowed"}),
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
     std::vector<std::string> fragments;
   };
   const std::vector<Spoiled> cases = {
-      {old_format, "2.2 0 8", "2.1 0 8", {":2:", "version", "2.1", "2.2 and 4.1"}},
+      {old_format, "2.2 0 8", "1 0 8", {":2:", "version", "1", "2, 2.1, 2.2 and 4.1"}},
       {old_format, "2.2 0 8", "4 0 8", {":2:", "version", "4", "2.2 and 4.1"}},
       {old_format, "2.2 0 8", "2.2 1 8", {":2:", "file type", "1", "0", "ASCII"}},
       {new_format, "4.1 0 8", "4.1 1 8", {":2:", "file type", "1", "0", "ASCII"}},
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_named) {
       {new_format, "3 5 2", "4 5 2", {"dimension", "$EndNodes"}},
       {new_format, "3 5 2", "2 5 2", {":20:", "section", "1", "$EndNodes"}},
       {new_format, "1 3 1 1\n2 7 8", "1 3 1 1\n2 7 9", {":29:", "line", "9", "tags"}},
-      {new_format, "2 1 3 1\n", "2 1 10 1\n", {":30:", "element type", "10", "3 (quadrangle)"}},
+      {new_format, "2 1 3 1\n", "2 1 30 1\n", {":30:", "element type", "30", "3 (quadrangle)"}},
       {new_format, "2 1 3 1\n", "2 1 3 1000000000\n", {"quadrangle"}},
       {new_format, "3 5 2", "3 6 2", {":9:", "number of nodes", "6", "5, as in the blocks"}},
       {new_format, "3 5 2", "3 5 1", {":9:", "least node tag", "1", "2, as in the blocks"}},

@@ -8,6 +8,7 @@
 
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/mesh/mesh.hpp"
 #include "qddot/scene/mesh/mesh_scene.hpp"
 #include "qddot/scene/toml_table.hpp"
 
@@ -112,6 +113,12 @@ void warn_of_loose_nodes(Scene& scene) {
 Scene parse_scene(const std::string& text, const std::string& path,
                   const std::filesystem::path& folder, const SceneLimits& limits,
                   const TextSource& read) {
+  if (mesh::is_mesh_file(path))
+    throw InvalidInput(
+        fmt::format("{}: it is a mesh, not a scene; allowed are scene files, which name a mesh in "
+                    "a table [mesh] "
+                    "with file = \"{}\"",
+                    path, std::filesystem::path(path).filename().string()));
   const toml::table content = parse_toml(text, path);
   const TomlTable file(content, path);
   require_one_origin(file);

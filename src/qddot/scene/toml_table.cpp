@@ -69,22 +69,31 @@ Eigen::Vector3d TomlTable::vector(std::string_view key, int size) const {
 int TomlTable::integer(std::string_view key, int low, int high) const {
   const auto* value = table_[key].as_integer();
   if (!value || value->get() < low || value->get() > high)
-    refuse(key, fmt::format("integers from {} to {}", low, high));
+    refuse(key, low == high ? fmt::format("no integers but {}", low)
+                            : fmt::format("integers from {} to {}", low, high));
   return static_cast<int>(value->get());
+}
+
+std::vector<std::size_t> TomlTable::nodes(std::string_view key, std::size_t count) const {
+  const toml::array* array = table_[key].as_array();
+  if (!array || array->empty() || !array->is_homogeneous<std::int64_t>())
+    refuse(key, fmt::format("arrays of nodes from 0 to {}", count - 1));
+  std::vector<std::size_t> all;
+  for (const toml::node& entry : *array) {
+    const std::int64_t node = entry.as_integer()->get();
+    if (node < 0 || static_cast<std::size_t>(node) >= count)
+      fail(key, fmt::format("{} is not a node; allowed are 0 to {}", node, count - 1));
+    all.push_back(static_cast<std::size_t>(node));
+  }
+  return all;
 }
 
 std::array<std::size_t, 2> TomlTable::node_pair(std::string_view key, std::size_t count) const {
   const toml::array* array = table_[key].as_array();
   if (!array || array->size() != 2 || !array->is_homogeneous<std::int64_t>())
     refuse(key, fmt::format("pairs of nodes from 0 to {}", count - 1));
-  std::array<std::size_t, 2> pair{};
-  for (std::size_t end : {0, 1}) {
-    const std::int64_t node = (*array)[end].as_integer()->get();
-    if (node < 0 || static_cast<std::size_t>(node) >= count)
-      fail(key, fmt::format("{} is not a node; allowed are 0 to {}", node, count - 1));
-    pair[end] = static_cast<std::size_t>(node);
-  }
-  return pair;
+  const std::vector<std::size_t> pair = nodes(key, count);
+  return {pair[0], pair[1]};
 }
 
 bool TomlTable::flag_or_false(std::string_view key) const {

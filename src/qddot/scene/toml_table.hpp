@@ -49,6 +49,8 @@ class TomlTable {
   }
   // An integer in [low, high].
   int integer(std::string_view key, int low, int high) const;
+  // Some of `count` nodes, by their indices; one at least.
+  std::vector<std::size_t> nodes(std::string_view key, std::size_t count) const;
   // Two of `count` nodes, by their indices.
   std::array<std::size_t, 2> node_pair(std::string_view key, std::size_t count) const;
   // The boolean at `key`, false if the key is missing; the string; the table.

@@ -7,20 +7,30 @@
 
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh_formats.hpp"
+#include "qddot/scene/mesh/weld.hpp"
 
 namespace qddot::mesh {
 namespace {
 
-using Reader = Mesh (*)(const std::string& text, const std::string& file);
+using Reader = Mesh (*)(std::string_view text, const std::string& file);
 
-Reader reader_for(const std::filesystem::path& file) {
-  const std::string ending = file.extension().string();
+// Nullptr if the ending is that of no mesh.
+Reader reader_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
+  }
   if (ending == ".obj") return read_obj;
   if (ending == ".mesh") return read_medit;
   if (ending == ".msh") return read_gmsh;
+  return nullptr;
+}
+
+Reader reader_for(const std::filesystem::path& file) {
+  if (const Reader reader = reader_of(file)) return reader;
   throw InvalidInput(
       fmt::format("{}: the ending \"{}\" is not allowed; allowed are .obj, .mesh and .msh",
-                  file.string(), ending));
+                  file.string(), file.extension().string()));
 }
 
 // Lines end with a line feed, a carriage return, or both, as each system writes them.
@@ -80,11 +90,23 @@ void keep_distinct_faces(std::vector<Face>& faces) {
 
 }  // namespace
 
+bool Words::is_continued() const {
+  return backslash_ == Backslash::continues_lines && text_[at_] == '\\' && at_ + 1 < text_.size() &&
+         is_line_end(text_[at_ + 1]);
+}
+
 std::string_view Words::in_line() {
-  while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  for (; at_ < text_.size(); ++at_) {
+    if (is_blank(text_[at_])) continue;
+    if (!is_continued()) break;
+    ++at_;
+    pass_line_end();
+    --at_;
+  }
   if (at_ < text_.size() && text_[at_] == '#') pass_line();
   const std::size_t start = at_;
-  while (at_ < text_.size() && !is_line_end(text_[at_]) && !is_blank(text_[at_])) ++at_;
+  while (at_ < text_.size() && !is_line_end(text_[at_]) && !is_blank(text_[at_]) && !is_continued())
+    ++at_;
   return text_.substr(start, at_ - start);
 }
 
@@ -100,6 +122,10 @@ void Words::pass_line() {
 
 bool Words::next_line() {
   pass_line();
+  return pass_line_end();
+}
+
+bool Words::pass_line_end() {
   if (at_ == text_.size()) return false;
   at_ += text_.substr(at_, 2) == "\r\n" ? 2 : 1;
   ++line_;
@@ -113,22 +139,43 @@ void Words::refuse(std::string_view field, std::string_view value, std::string_v
   throw InvalidInput(fmt::format("{}:{}: {}: {}; allowed {}", file_, line, field, what, allowed));
 }
 
+std::optional<double> real_in(std::string_view word) {
+  if (const auto value = number_in<double>(word)) return value;
+  const std::size_t exponent = word.find_first_of("dD");
+  if (exponent == word.npos) return {};
+  std::string with_e(word);
+  with_e[exponent] = 'e';
+  return number_in<double>(with_e);
+}
+
 double Words::number(std::string_view field, std::string_view word) const {
-  const auto value = number_in<double>(word);
+  const auto value = real_in(word);
   if (!value || !std::isfinite(*value)) refuse(field, word, "are finite numbers");
   return *value;
 }
 
-Mesh read_mesh(const std::filesystem::path& file, const TextSource& read) {
-  reader_for(file);  // a file with an unknown ending is not opened
-  return parse_mesh(read(file.string()), file);
+bool is_mesh_file(const std::filesystem::path& file) { return reader_of(file) != nullptr; }
+
+void Mesh::leave_out(std::string_view section) {
+  const std::string warning = fmt::format("the section {} is left out", shown(section));
+  if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
 }
 
-Mesh parse_mesh(const std::string& text, const std::filesystem::path& file) {
+Mesh read_mesh(const std::filesystem::path& file, const TextSource& read, double weld_within) {
+  reader_for(file);  // a file with an unknown ending is not opened
+  return parse_mesh(read(file.string()), file, weld_within);
+}
+
+Mesh parse_mesh(const std::string& text, const std::filesystem::path& file, double weld_within) {
   const std::string name = file.string();
-  Mesh mesh = reader_for(file)(text, name);
+  // Some editors begin a text in UTF-8 with this mark.
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  std::string_view content = text;
+  if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
+  Mesh mesh = reader_for(file)(content, name);
   if (mesh.vertices.empty())
     throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
+  if (weld_within >= 0) weld(welded(mesh.vertices, weld_within), mesh);
   keep_distinct(mesh.edges);
   add_boundary(mesh);
   keep_distinct_faces(mesh.faces);

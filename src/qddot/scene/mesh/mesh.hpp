@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,16 +23,29 @@ struct Mesh {
   // to one tetrahedron only. Triangles of the last kind face outwards if the tetrahedron has a
   // positive volume.
   std::vector<std::array<std::size_t, 3>> faces;
+  // What the file has that is not read and may matter: sentences without the file's name.
+  std::vector<std::string> warnings{};
+
+  // Warns once of a section that is not read, and that nobody knows to mean nothing.
+  void leave_out(std::string_view section);
 };
 
-// Reads a mesh; the file name's ending chooses the format. A Wavefront .obj may have lines and
-// polygonal faces of the forms a, a/b, a//c, a/b/c; negative indices count back from the last
-// vertex. A MEDIT .mesh, or a Gmsh .msh of version 2.2 or 4.1 (both ASCII), gives every element's
-// edges. Throws InvalidInput with the file, line, value and what is allowed.
-Mesh read_mesh(const std::filesystem::path& file, const TextSource& read = read_text);
+// Whether the file's ending is that of a mesh.
+bool is_mesh_file(const std::filesystem::path& file);
+
+// Reads a mesh; the file name's ending, in either case, chooses the format. A Wavefront .obj may
+// have lines and polygonal faces of the forms a, a/b, a//c, a/b/c; negative indices count back from
+// the last vertex, and a backslash continues a line. A MEDIT .mesh, or a Gmsh .msh of version 2,
+// 2.1, 2.2 or 4.1 (both ASCII), gives the edges between every element's corners, also of elements
+// of order 2 and 3. Numbers may have exponents with e or d. Vertices within the distance
+// `weld_within` [unit of the file] of each other are welded (see weld.hpp), none if it is negative.
+// Throws InvalidInput with the file, line, value and what is allowed.
+Mesh read_mesh(const std::filesystem::path& file, const TextSource& read = read_text,
+               double weld_within = -1);
 
 // The same for a text in memory, as if `file` held it.
-Mesh parse_mesh(const std::string& text, const std::filesystem::path& file);
+Mesh parse_mesh(const std::string& text, const std::filesystem::path& file,
+                double weld_within = -1);
 
 // The two vertices opposite to each edge that exactly two triangles share, ordered by these edges.
 // A spring between them resists bending about the edge.

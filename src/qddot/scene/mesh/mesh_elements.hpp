@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
@@ -29,8 +30,56 @@ inline constexpr std::array<Element, 8> elements{{
     {"pyramid", "Pyramids", 7, 3, 5, "01 12 23 30 04 14 24 34"},
     {"point", "", 15, 0, 1, ""},
 }};
+// A kind of element of order 2 or 3. Its first nodes are the corners of the element of that name,
+// and the others lie between them.
+struct CurvedElement {
+  std::string_view name;
+  std::string_view medit_section;  // empty: not read from MEDIT files
+  int gmsh_type;
+  std::size_t nodes;
+};
+inline constexpr std::array<CurvedElement, 20> curved_elements{{
+    {"line", "EdgesP2", 8, 3},
+    {"triangle", "TrianglesP2", 9, 6},
+    {"quadrangle", "QuadrilateralsQ2", 10, 9},
+    {"tetrahedron", "TetrahedraP2", 11, 10},
+    {"hexahedron", "HexahedraQ2", 12, 27},
+    {"prism", "PrismsP2", 13, 18},
+    {"pyramid", "PyramidsP2", 14, 14},
+    {"quadrangle", "", 16, 8},
+    {"hexahedron", "", 17, 20},
+    {"prism", "", 18, 15},
+    {"pyramid", "", 19, 13},
+    {"line", "EdgesP3", 26, 4},
+    {"triangle", "", 20, 9},
+    {"triangle", "TrianglesP3", 21, 10},
+    {"tetrahedron", "TetrahedraP3", 29, 20},
+    {"quadrangle", "QuadrilateralsQ3", 36, 16},
+    {"quadrangle", "", 39, 12},
+    {"prism", "PrismsP3", 90, 40},
+    {"hexahedron", "HexahedraQ3", 92, 64},
+    {"pyramid", "PyramidsP3", 118, 30},
+}};
 // The most corners that an element has.
 inline constexpr std::size_t most_corners = 8;
+
+// An element as a file lists it: its corners come first of its nodes.
+struct ListedElement {
+  const Element* element = nullptr;
+  std::size_t nodes = 0;
+  int gmsh_type = 0;
+};
+// The kind that has `key` as its MEDIT section or its Gmsh type; without an element if none has.
+template <class Key>
+ListedElement listed_element(const Key& key, Key Element::*of_element,
+                             Key CurvedElement::*of_curved) {
+  if (const auto found = std::ranges::find(elements, key, of_element); found != elements.end())
+    return {&*found, found->corners, found->gmsh_type};
+  const auto curved = std::ranges::find(curved_elements, key, of_curved);
+  if (curved == curved_elements.end()) return {};
+  return {&*std::ranges::find(elements, curved->name, &Element::name), curved->nodes,
+          curved->gmsh_type};
+}
 
 // Appends the triangles between the first corner of a polygon and each edge opposite to it.
 inline void add_polygon(std::span<const std::size_t> corners, Mesh& mesh) {

@@ -9,12 +9,17 @@
 
 namespace qddot::mesh {
 
+// Whether a backslash at a line's end joins the next line to it.
+enum class Backslash { is_a_character, continues_lines };
+
 // The words of a mesh file, and the line of the last one. Lines end with LF, CR LF or CR alone; a
 // '#' ends its line's words.
 class Words {
  public:
   // Both must outlive this.
-  Words(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+  Words(std::string_view text, const std::string& file,
+        Backslash backslash = Backslash::is_a_character)
+      : text_(text), file_(file), backslash_(backslash) {}
 
   // The next word of this line; empty at the line's end.
   std::string_view in_line();
@@ -37,9 +42,12 @@ class Words {
 
  private:
   void pass_line();  // to its end
+  bool pass_line_end();
+  bool is_continued() const;
 
   std::string_view text_;
   const std::string& file_;
+  Backslash backslash_;
   std::size_t at_ = 0;
   int line_ = 1;
 };
@@ -54,9 +62,12 @@ std::optional<Number> number_in(std::string_view word) {
   return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
 }
 
+// The real number that is all of `word`. Its exponent may follow e or, as Fortran writes it, d.
+std::optional<double> real_in(std::string_view word);
+
 // Read one format each. Edges come as the file has them: repeated, in either direction, unsorted.
-Mesh read_obj(const std::string& text, const std::string& file);
-Mesh read_medit(const std::string& text, const std::string& file);
-Mesh read_gmsh(const std::string& text, const std::string& file);
+Mesh read_obj(std::string_view text, const std::string& file);
+Mesh read_medit(std::string_view text, const std::string& file);
+Mesh read_gmsh(std::string_view text, const std::string& file);
 
 }  // namespace qddot::mesh

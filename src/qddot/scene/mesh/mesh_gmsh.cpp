@@ -1,7 +1,8 @@
-// The MSH formats 2.2 and 4.1 of Gmsh, ASCII: sections $Name ... $EndName, nodes before the
+// The MSH formats 2, 2.1, 2.2 and 4.1 of Gmsh, ASCII: sections $Name ... $EndName, nodes before the
 // elements that name them by their tags.
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <unordered_map>
 
@@ -20,12 +21,21 @@ std::string element_types() {
   std::vector<std::string> types;
   for (const Element& element : elements)
     types.push_back(fmt::format("{} ({})", element.gmsh_type, element.name));
-  return fmt::format("are {}", fmt::join(types, ", "));
+  return fmt::format("are {}, and those of order 2 and 3", fmt::join(types, ", "));
+}
+
+// Sections that say nothing of nodes and elements: names, entities, fields and partitions.
+bool is_silent_section(std::string_view section) {
+  constexpr std::string_view sections[] = {
+      "$PhysicalNames", "$Entities",        "$PartitionedEntities", "$NodeData",
+      "$ElementData",   "$ElementNodeData", "$GhostElements",       "$InterpolationScheme",
+      "$Comments",      "$Parametrizations"};
+  return std::ranges::find(sections, section) != std::end(sections);
 }
 
 class GmshReader {
  public:
-  GmshReader(const std::string& text, const std::string& file) : words_(text, file) {}
+  GmshReader(std::string_view text, const std::string& file) : words_(text, file) {}
 
   Mesh read() {
     expect("$MeshFormat", words_.next());
@@ -34,7 +44,9 @@ class GmshReader {
       if (!section.starts_with('$'))
         words_.refuse("section", section, "are names that start with $");
       if (section == "$Nodes")
-        has_blocks_ ? read_node_blocks() : read_node_list();
+        has_blocks_ ? read_node_blocks() : read_node_list(section);
+      else if (section == "$ParametricNodes" && !has_blocks_)
+        read_node_list(section);
       else if (section == "$Elements")
         has_blocks_ ? read_element_blocks() : read_element_list();
       else if (section == "$MeshFormat")
@@ -66,8 +78,8 @@ class GmshReader {
   void read_format() {
     const auto version = words_.next();
     const auto number = number_in<double>(version);
-    if (number != 2.2 && number != 4.1)
-      words_.refuse("version of the format", version, "are 2.2 and 4.1");
+    if (number != 2 && number != 2.1 && number != 2.2 && number != 4.1)
+      words_.refuse("version of the format", version, "are 2, 2.1, 2.2 and 4.1");
     has_blocks_ = number == 4.1;
     const auto type = words_.next();
     if (type != "0") words_.refuse("file type", type, "is 0, which is ASCII");
@@ -75,8 +87,16 @@ class GmshReader {
     expect("$EndMeshFormat", words_.next());
   }
 
+  static std::string end_of(std::string_view section) {
+    return fmt::format("$End{}", section.substr(1));
+  }
+
   void pass_over(std::string_view section) {
-    const std::string end = fmt::format("$End{}", section.substr(1));
+    if (section == "$Periodic")
+      mesh_.warnings.push_back("the section $Periodic is left out: nodes that it links stay apart");
+    else if (!is_silent_section(section))
+      mesh_.leave_out(section);
+    const std::string end = end_of(section);
     const int line = words_.line();
     while (words_.in_line() != end) {
       if (!words_.next_line())
@@ -85,9 +105,15 @@ class GmshReader {
     }
   }
 
-  void read_node_list() {
-    for (std::size_t left = count("number of nodes"); left > 0; --left) add_node(tag("node tag"));
-    expect("$EndNodes", words_.next());
+  void read_node_list(std::string_view section) {
+    for (std::size_t left = count("number of nodes"); left > 0; --left) {
+      add_node(tag("node tag"));
+      if (section != "$ParametricNodes") continue;
+      // The dimension and the tag of its entity, and its parameters there.
+      for (auto word = words_.in_line(); !word.empty(); word = words_.in_line())
+        words_.number("parameter of a node", word);
+    }
+    expect(end_of(section), words_.next());
   }
 
   void read_node_blocks() {
@@ -123,10 +149,10 @@ class GmshReader {
   void read_element_list() {
     for (std::size_t left = count("number of elements"); left > 0; --left) {
       tag("element tag");
-      const Element& element = element_of_type();
+      const ListedElement listed = element_of_type();
       for (std::size_t tags = count("number of tags"); tags > 0; --tags)
         whole<std::int64_t>("tag of the element");
-      read_corners(element);
+      read_corners(listed);
     }
     expect("$EndElements", words_.next());
   }
@@ -137,13 +163,14 @@ class GmshReader {
     for (std::size_t block = 0; block < header.blocks; ++block) {
       const int dimension = whole<int>("dimension of the entity", 0, 3);
       whole<int>("tag of the entity");
-      const Element& element = element_of_type();
-      if (element.dimension != dimension)
-        words_.refuse("element type", fmt::format("{} ({})", element.gmsh_type, element.name),
+      const ListedElement listed = element_of_type();
+      if (listed.element->dimension != dimension)
+        words_.refuse("element type",
+                      fmt::format("{} ({})", listed.gmsh_type, listed.element->name),
                       fmt::format("are those of the entity's dimension, {}", dimension));
       for (std::size_t left = count("number of elements"); left > 0; --left) {
         range.take(tag("element tag"));
-        read_corners(element);
+        read_corners(listed);
       }
     }
     expect("$EndElements", words_.next());
@@ -187,23 +214,26 @@ class GmshReader {
     compare(fmt::format("largest {} tag", what), header.largest, range.largest);
   }
 
-  const Element& element_of_type() {
+  ListedElement element_of_type() {
     const auto word = words_.next();
     const auto type = number_in<int>(word);
-    const auto element = std::ranges::find_if(
-        elements, [&](const Element& candidate) { return candidate.gmsh_type == type; });
-    if (element == elements.end()) words_.refuse("element type", word, element_types());
-    return *element;
+    const ListedElement listed =
+        type ? listed_element(*type, &Element::gmsh_type, &CurvedElement::gmsh_type)
+             : ListedElement{};
+    if (!listed.element) words_.refuse("element type", word, element_types());
+    return listed;
   }
 
-  void read_corners(const Element& element) {
+  void read_corners(const ListedElement& listed) {
+    const Element& element = *listed.element;
     std::array<std::size_t, most_corners> corners;
-    for (std::size_t k = 0; k < element.corners; ++k) {
+    for (std::size_t k = 0; k < listed.nodes; ++k) {
       const Tag node = tag(element.name);
       const auto vertex = vertex_of_.find(node);
       if (vertex == vertex_of_.end())
-        words_.refuse(element.name, std::to_string(node), "are tags of nodes in $Nodes before");
-      corners[k] = vertex->second;
+        words_.refuse(element.name, std::to_string(node),
+                      "are the tags of nodes in a section $Nodes that comes before");
+      if (k < element.corners) corners[k] = vertex->second;
     }
     add_element(element, corners, mesh_);
   }
@@ -216,7 +246,7 @@ class GmshReader {
 
 }  // namespace
 
-Mesh read_gmsh(const std::string& text, const std::string& file) {
+Mesh read_gmsh(std::string_view text, const std::string& file) {
   return GmshReader(text, file).read();
 }
 

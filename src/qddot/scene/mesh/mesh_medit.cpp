@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -8,9 +9,30 @@
 namespace qddot::mesh {
 namespace {
 
+// Sections that say nothing of vertices and edges: marks, normals, geometry and partitions.
+bool is_silent_keyword(std::string_view section) {
+  constexpr std::string_view sections[] = {"Corners",
+                                           "Ridges",
+                                           "Normals",
+                                           "Tangents",
+                                           "NormalAtVertices",
+                                           "NormalAtTriangleVertices",
+                                           "NormalAtQuadrilateralVertices",
+                                           "TangentAtVertices",
+                                           "TangentAtEdges",
+                                           "TangentAtEdgeVertices",
+                                           "AngleOfCornerBound",
+                                           "BoundingBox",
+                                           "Geometry",
+                                           "Identifier"};
+  return section.starts_with("Required") || section.starts_with("SubDomain") ||
+         section.find("OnGeometric") != section.npos ||
+         std::ranges::find(sections, section) != std::end(sections);
+}
+
 class MeditReader {
  public:
-  MeditReader(const std::string& text, const std::string& file) : words_(text, file) {}
+  MeditReader(std::string_view text, const std::string& file) : words_(text, file) {}
 
   Mesh read() {
     if (const auto word = words_.next(); word != "MeshVersionFormatted")
@@ -21,7 +43,7 @@ class MeditReader {
     bool passes_over = false;
     std::string_view section = "MeshVersionFormatted";
     for (auto word = words_.next(); !word.empty() && word != "End"; word = words_.next()) {
-      if (number_in<double>(word)) {
+      if (real_in(word)) {
         if (!passes_over)
           words_.refuse(section, word, "is no more than its count says: next comes a keyword");
         continue;
@@ -39,12 +61,14 @@ class MeditReader {
  private:
   // Reads the section with that keyword; false if it is not one of those read.
   bool read_section(std::string_view keyword) {
-    const auto element =
-        std::find_if(elements.begin(), elements.end(),
-                     [&](const Element& candidate) { return candidate.medit_section == keyword; });
-    const bool is_read =
-        keyword == "Dimension" || keyword == "Vertices" || element != elements.end();
-    if (!is_read) return false;
+    const ListedElement listed =
+        listed_element(keyword, &Element::medit_section, &CurvedElement::medit_section);
+    if (keyword != "Dimension" && keyword != "Vertices" && !listed.element) {
+      const bool is_text = !seen_.empty() && seen_.back() == "Identifier";
+      if (!is_text && !is_silent_keyword(keyword)) mesh_.leave_out(keyword);
+      if (keyword == "Identifier") seen_.push_back(keyword);
+      return false;
+    }
     if (std::ranges::find(seen_, keyword) != seen_.end())
       words_.refuse("section", keyword, "is each section once");
     seen_.push_back(keyword);
@@ -55,7 +79,7 @@ class MeditReader {
     } else if (keyword == "Vertices") {
       read_vertices();
     } else {
-      read_elements(*element);
+      read_elements(keyword, listed);
     }
     return true;
   }
@@ -81,13 +105,15 @@ class MeditReader {
     }
   }
 
-  void read_elements(const Element& element) {
-    const std::string_view field = element.medit_section;
+  void read_elements(std::string_view field, const ListedElement& listed) {
     std::array<std::size_t, most_corners> corners;
     for (std::size_t left = count(field); left > 0; --left) {
-      for (std::size_t k = 0; k < element.corners; ++k) corners[k] = corner(field);
+      for (std::size_t k = 0; k < listed.nodes; ++k) {
+        const std::size_t node = corner(field);
+        if (k < listed.element->corners) corners[k] = node;
+      }
       skip_reference(field);
-      add_element(element, corners, mesh_);
+      add_element(*listed.element, corners, mesh_);
     }
   }
 
@@ -110,7 +136,7 @@ class MeditReader {
 
 }  // namespace
 
-Mesh read_medit(const std::string& text, const std::string& file) {
+Mesh read_medit(std::string_view text, const std::string& file) {
   return MeditReader(text, file).read();
 }
 

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "qddot/scene/mesh/mesh_elements.hpp"
@@ -12,6 +15,7 @@ std::size_t corner_in(std::string_view word, const Words& words, std::size_t cou
   const auto index = number_in<std::int64_t>(word.substr(0, slash));
   const auto n = static_cast<std::int64_t>(count);
   const bool is_corner = word.find_first_not_of("/-0123456789", slash) == word.npos;
+  if (n == 0) words.refuse("face", word, "are faces after the vertices that they name");
   if (!is_corner || !index || *index == 0 || *index > n || *index < -n)
     words.refuse("face", word,
                  fmt::format("are a, a/b, a//c and a/b/c with a vertex a from 1 to {0}, or from -1 "
@@ -35,20 +39,59 @@ void add_face(Words& words, bool closed, Mesh& mesh) {
   if (corners.size() == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
 }
 
+void add_vertex(Words& words, Mesh& mesh) {
+  auto& vertex = mesh.vertices.emplace_back();
+  for (double& x : vertex) x = words.number("vertex", words.in_line());
+  // A weight or a colour may follow.
+  for (auto word = words.in_line(); !word.empty(); word = words.in_line())
+    words.number("vertex", word);
+}
+
+// Kinds of lines that say nothing of vertices and edges: texture, normals, groups, materials.
+bool is_silent_line(std::string_view kind) {
+  constexpr std::string_view kinds[] = {"vt",     "vn",         "vp",        "g",        "o",
+                                        "s",      "mg",         "p",         "mtllib",   "usemtl",
+                                        "maplib", "usemap",     "bevel",     "c_interp", "d_interp",
+                                        "lod",    "shadow_obj", "trace_obj", "ctech",    "stech"};
+  return std::ranges::find(kinds, kind) != std::end(kinds);
+}
+
+bool is_keyword(std::string_view kind) {
+  return std::ranges::all_of(kind,
+                             [](char c) {
+                               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                                      c == '_' || (c >= '0' && c <= '9');
+                             }) &&
+         !(kind[0] >= '0' && kind[0] <= '9');
+}
+
 }  // namespace
 
-Mesh read_obj(const std::string& text, const std::string& file) {
+Mesh read_obj(std::string_view text, const std::string& file) {
   Mesh mesh;
-  Words words(text, file);
+  Words words(text, file, Backslash::continues_lines);
+  // Lines that are not read: free-form curves and surfaces, and what others added to the format.
+  int left_out = 0, first_line = 0;
+  std::string first;
   do {
     const std::string_view kind = words.in_line();
     if (kind == "v") {
-      auto& vertex = mesh.vertices.emplace_back();
-      for (double& x : vertex) x = words.number("vertex", words.in_line());
-    } else if (kind == "f" || kind == "l") {
-      add_face(words, kind == "f", mesh);
+      add_vertex(words, mesh);
+    } else if (kind == "f" || kind == "fo" || kind == "l") {
+      add_face(words, kind != "l", mesh);
+    } else if (!kind.empty() && !is_silent_line(kind)) {
+      if (!is_keyword(kind))
+        words.refuse("line", kind, "are lines that begin with a keyword, such as v, f or l");
+      if (left_out++ > 0) continue;
+      first_line = words.line();
+      first = kind;
     }
   } while (words.next_line());
+  if (left_out > 0)
+    mesh.warnings.push_back(
+        fmt::format("{} {} left out; only vertices (v), faces (f) and lines (l) are read; the "
+                    "first is line {}, {}",
+                    left_out, left_out == 1 ? "line is" : "lines are", first_line, shown(first)));
   return mesh;
 }
 

@@ -2,28 +2,32 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <boost/pending/disjoint_sets.hpp>
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh.hpp"
+#include "qddot/scene/mesh/weld.hpp"
 
 namespace qddot {
 namespace {
 
 using namespace mesh;
 
-Mesh read_file(const TomlTable& table, const std::filesystem::path& folder,
-               const TextSource& read) {
+Mesh read_file(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
+               double scale) {
   const std::string file = table.text("file");
   const bool has_control =
       std::ranges::any_of(file, [](unsigned char c) { return std::iscntrl(c); });
   if (has_control || file.size() > 1000)  // messages hold it
     table.refuse("file", "names of up to 1000 bytes without control characters");
   try {
-    return read_mesh(folder / file, read);
+    return read_mesh(folder / file, read, table.number_or(-1, "weld", not_negative) / scale);
   } catch (const InvalidInput& refusal) {
     table.fail("file", refusal.what());
   }
@@ -92,12 +96,62 @@ std::string unused_sentence(const std::string& file, std::size_t unused) {
                      unused == 1 ? "is" : "are", unused == 1 ? "it" : "them");
 }
 
+// Moves vertices as the keys scale, rotation and shift say, in this order. `rotation`: the axis,
+// with the angle [degrees] as its length.
+void place(const TomlTable& table, double scale, std::vector<Eigen::Vector3d>& vertices) {
+  const Eigen::Vector3d turn = table.vector_or_zero("rotation", 3) * (std::numbers::pi / 180),
+                        shift = table.vector_or_zero("shift", 3);
+  const double angle = turn.norm();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (angle > 0) rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  // Right angles are exact.
+  for (double& entry : rotation.reshaped()) {
+    if (std::abs(entry - std::round(entry)) < 1e-15) entry = std::round(entry);
+  }
+  for (Eigen::Vector3d& x : vertices) {
+    x *= scale;
+    if (angle > 0) x = rotation * x;
+    x += shift;
+  }
+}
+
+// A sentence about parts that no edge joins, as a mesh has along seams; empty if there is one part.
+std::string parts_sentence(const std::string& file, const Scene& scene) {
+  std::vector<std::size_t> rank(scene.nodes.size()), parent(scene.nodes.size());
+  boost::disjoint_sets sets(rank.data(), parent.data());
+  for (std::size_t i = 0; i < parent.size(); ++i) sets.make_set(i);
+  std::size_t parts = scene.nodes.size();
+  for (const Spring& spring : scene.springs) {
+    const std::size_t a = sets.find_set(spring.nodes[0]), b = sets.find_set(spring.nodes[1]);
+    if (a == b) continue;
+    sets.link(a, b);
+    --parts;
+  }
+  if (parts == 1) return "";
+  std::vector<Eigen::Vector3d> places;
+  for (const Node& node : scene.nodes) places.push_back(node.position);
+  const auto to = welded(places, 0);
+  std::size_t doubled = 0;
+  for (std::size_t i = 0; i < to.size(); ++i) doubled += to[i] != i;
+  return fmt::format(
+      "{}: it falls into {} parts that no edge joins{}", file, parts,
+      doubled == 0 ? ""
+                   : fmt::format("; {} lie in the place of another; weld = 1e-9 joins them",
+                                 doubled == 1 ? "1 vertex" : fmt::format("{} vertices", doubled)));
+}
+
 std::string point_in_words(const Eigen::Vector3d& x) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]);
 }
 
 void pin(const TomlTable& box, std::vector<Node>& nodes) {
-  box.allow_keys({"min", "max"});
+  box.allow_keys({"min", "max", "nodes"});
+  if (box.has("nodes")) {
+    if (box.has("min") || box.has("max"))
+      box.fail("nodes", "allowed is either nodes, or min and max");
+    for (const std::size_t node : box.nodes("nodes", nodes.size())) nodes[node].pinned = true;
+    return;
+  }
   const Eigen::Vector3d low = box.vector("min", 3), high = box.vector("max", 3);
   if ((low.array() > high.array()).any()) box.refuse("max", "arrays that are nowhere below min");
   bool catches_any = false;
@@ -121,15 +175,17 @@ void pin(const TomlTable& box, std::vector<Node>& nodes) {
 
 void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
               const SceneLimits& limits, Scene& scene) {
-  table.allow_keys(
-      {"file", "scale", "stiffness", "bending_stiffness", "node_mass", "total_mass", "pin"});
+  table.allow_keys({"file", "scale", "rotation", "shift", "weld", "velocity", "stiffness",
+                    "bending_stiffness", "node_mass", "total_mass", "pin"});
   const double scale = table.number_or(1, "scale", positive);
   const double stiffness = table.number("stiffness", not_negative);
   const double bending_stiffness = table.number_or(0, "bending_stiffness", not_negative);
-  Mesh mesh = read_file(table, folder, read);
+  Mesh mesh = read_file(table, folder, read, scale);
   const std::string file = shown(table.text("file"));
   if (mesh.edges.empty())
     table.fail("file", fmt::format("{} has no edge; allowed are meshes with some", file));
+  for (const std::string& warning : mesh.warnings)
+    scene.warnings.push_back(fmt::format("{}: {}", file, warning));
   if (const std::size_t unused = leave_out_unused(mesh); unused > 0)
     scene.warnings.push_back(unused_sentence(file, unused));
   const auto bending = bending_pairs(table, mesh);
@@ -139,12 +195,16 @@ void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const
   const double mass = mass_of_each(table, mesh.vertices.size());
   scene.nodes.reserve(size.nodes);
   scene.springs.reserve(size.springs);
-  for (const Eigen::Vector3d& vertex : mesh.vertices)
-    scene.nodes.push_back({.position = scale * vertex, .mass = mass});
+  place(table, scale, mesh.vertices);
+  const Eigen::Vector3d velocity = table.vector_or_zero("velocity", 3);
+  for (const Eigen::Vector3d& x : mesh.vertices)
+    scene.nodes.push_back({.position = x, .velocity = velocity, .mass = mass});
   add_springs(mesh.edges, stiffness, scene);
   add_springs(bending, bending_stiffness, scene);
   scene.faces = std::move(mesh.faces);
   for (const TomlTable& box : table.tables("pin")) pin(box, scene.nodes);
+  if (const std::string parts = parts_sentence(file, scene); !parts.empty())
+    scene.warnings.push_back(parts);
 }
 
 }  // namespace qddot
