@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "qddot/integrators/integrator.hpp"
+#include "qddot/integrators/nearest_name.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -55,8 +56,10 @@ const Entry& named(const std::string& name, const std::vector<Entry>& all,
   if (found != all.end()) return *found;
   std::vector<std::string> names;
   for (const Entry& entry : all) names.push_back(entry.*own_name);
-  throw InvalidInput(
-      fmt::format("{}: {} is not {}; allowed are {}", option, name, what, fmt::join(names, ", ")));
+  const std::string nearest = nearest_name(name, names);
+  throw InvalidInput(fmt::format("{}: {} is not {}{}; allowed are {}", option, name, what,
+                                 nearest.empty() ? "" : ", the nearest is " + nearest,
+                                 fmt::join(names, ", ")));
 }
 
 // Throws InvalidInput if a value of the list is there twice.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Callable
@@ -50,7 +51,9 @@ def method(name: str) -> Method:
     """The method of that name. If there is none, raises a ValueError that names all methods."""
     found = _all().get(name) if isinstance(name, str) else None
     if found is None:
-        raise ValueError(f"{name!r} is no method; there are {', '.join(_all())}")
+        nearest = difflib.get_close_matches(name, _all(), 1) if isinstance(name, str) else []
+        hint = f", the nearest is {nearest[0]}" if nearest else ""
+        raise ValueError(f"{name!r} is no method{hint}; there are {', '.join(_all())}")
     return found
 
 

@@ -33,6 +33,7 @@ TABLE = """
 {STUDIES,modes,solvers} --scene carpet OUT | carpet | allowed
 {simulate --write-scene s.toml,equilibrium} --scene carpet | carpet | allowed
 {STUDIES} --scene fpu --methods leapfrog OUT | --methods: leapfrog is not a method | allowed
+{STUDIES} --scene fpu --methods verlett OUT | --methods: verlett is not a method, the nearest is verlet | allowed
 {crossover,scaling} --methods leapfrog OUT | --methods: leapfrog is not a method | allowed
 {work_precision,energy_drift,stock_sundials,exchange,reversal,stability_map} --scene fpu --methods ida,ida OUT | --methods: ida is named twice
 solvers --scene cloth --solvers klu,klu OUT | --solvers: klu is named twice; allowed is once

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "qddot/integrators/nearest_name.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/settle.hpp"
 
@@ -21,9 +23,12 @@ void require_fit(const Method& method, const System& system) {
 
 const Method& method(std::string_view name) {
   if (const Method* found = find_method(name)) return *found;
-  std::string all;
-  for (const Method& other : methods()) all += (all.empty() ? "" : ", ") + other.name;
-  throw std::invalid_argument(fmt::format("{} is no method; there are {}", name, all));
+  std::vector<std::string> all;
+  for (const Method& other : methods()) all.push_back(other.name);
+  const std::string nearest = nearest_name(name, all);
+  throw std::invalid_argument(fmt::format("{} is no method{}; there are {}", name,
+                                          nearest.empty() ? "" : ", the nearest is " + nearest,
+                                          fmt::join(all, ", ")));
 }
 
 ReducedScene reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
