@@ -49,6 +49,9 @@ def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
     if model.has_potential:
         for u in _directions(x.size, random):
             _check_energy(model, x, u, d)
+    elif x.size > 1:
+        for _ in range(DIRECTIONS):
+            _check_gradient(model, x, d, random.uniform(-1, 1, (2, x.size)))
     if model.has_stiffness:
         _check_stiffness(model, x, random.uniform(-1, 1, x.size), d, has_own_stiffness)
 
@@ -64,7 +67,8 @@ def _directions(n: int, random: np.random.Generator) -> Iterator[Floats]:
 def _check_energy(model: _qddot.Model, x: Floats, u: Floats, d: float) -> None:
     ahead, behind = model.force(x + d * u), model.force(x - d * u)
     fall = (model.potential(x - d * u) - model.potential(x + d * u)) / (2 * d)
-    work = float((ahead + behind) @ u) / 2
+    # Simpson's rule, as a force may vanish at the start and curve beside it.
+    work = float((ahead + 4 * model.force(x) + behind) @ u) / 6
     size = float((np.abs(ahead) + np.abs(ahead - behind)) @ np.abs(u))
     size += (abs(fall) + abs(work)) / 2
     rounding = ROUNDING * (abs(model.potential(x)) + d * float(np.max(np.abs(ahead)))) / d
@@ -72,6 +76,19 @@ def _check_energy(model: _qddot.Model, x: Floats, u: Floats, d: float) -> None:
         raise ValueError(
             f"potential: beside the start it falls by {fall:.6g} J/m where the force does "
             f"{work:.6g} J/m; f is -dV/dq {AS_IT_IS}"
+        )
+
+
+def _check_gradient(model: _qddot.Model, x: Floats, d: float, pair: Floats) -> None:
+    """The derivative of a gradient is symmetric: u . df/dq v = v . df/dq u."""
+    along = [(model.force(x + d * u) - model.force(x - d * u)) / (2 * d) for u in pair]
+    one, other = float(pair[0] @ along[1]), float(pair[1] @ along[0])
+    size = float(np.abs(pair[0]) @ np.abs(along[1]) + np.abs(pair[1]) @ np.abs(along[0]))
+    rounding = ROUNDING * float(np.sum(np.abs(model.force(x)))) / d
+    if not abs(one - other) <= TOLERANCE * size + rounding:
+        raise ValueError(
+            f"force: it is no gradient of a potential: beside the start df/dq is not symmetric, "
+            f"with {one:.6g} and {other:.6g} N/m for the same two directions {AS_IT_IS}"
         )
 
 
@@ -121,6 +138,11 @@ def require_arguments(function: Any, name: str, count: int) -> None:
         signature.bind(*range(count))
     except TypeError:
         takes = "(q, f)" if count == 2 else "(q)"
+        if count == 2 and len(signature.parameters) == 1:
+            raise ValueError(
+                f"{name}: it takes {signature}; it is called as {name}(q, f) and writes f, as by "
+                "f[:] = -q, so that no memory is allocated in each step"
+            ) from None
         raise ValueError(
             f"{name}: it takes {signature}; it is called as {name}{takes}. Forces that depend on the "
             "velocity or on time are not modelled, and no method would look at them"
@@ -189,7 +211,7 @@ class System:
 
     `length` [m]: a small length of the motion, for these differences; default: the extent of the
     start. `check`: whether the system is checked beside its first start: f must be finite and equal
-    -dV/dq, and K must agree with differences of f. Forces that depend on the velocity or on time
+    -dV/dq or, without V, have a symmetric df/dq, and K must agree with differences of f. Forces that depend on the velocity or on time
     are not modelled: a force that takes them is refused.
     """
 

@@ -58,7 +58,7 @@ OF_SCENES = {
     "until": dict(until=-1.0),
 }
 OF_RUNS = {
-    "'verlt' is no method; there are .*verlet": dict(method="verlt"),
+    "'verlt' is no method, the nearest is verlet; there are .*verlet": dict(method="verlt"),
     "one of both": dict(method=None, step_size=None),
     "one of both.*": dict(step_size=None, accuracy=1e-3),
     "step_size is missing; verlet": dict(step_size=None),
@@ -109,6 +109,7 @@ OF_SYSTEMS = {
     r"pattern: it is no matrix .* \(0,\)": dict(pattern=[]),
     "pattern: it has entries that are no whole": dict(pattern=[[0.5, 0], [1, 1], [0, 1]]),
     r"force\(q, f\).*velocity": dict(force=lambda q, v, f: None),
+    r"force: it takes \(q\); it is called as force\(q, f\) and writes f": dict(force=lambda q: -q),
     r"potential\(q\)": dict(potential=lambda q, v: 0.0),
     r"stiffness\(q\)": dict(stiffness=lambda t, q: 0.0),
 }

@@ -192,6 +192,45 @@ class OwnForces(unittest.TestCase):
         self.assertLess(abs(a.energy.total[0] / potential(q0) - 1), 1e-6)
         self.assertLess(np.max(np.abs(a.end.q - b.end.q)), 1e-3 * s)
 
+    def test_forces_that_vanish_at_the_start_are_looked_at_beside_it(self):
+        def power(n, factor=1.0):
+            def force(q, f):
+                f[:] = -factor * q ** (n - 1)
+
+            return qddot.System([1.0, 1.0], force, lambda q: np.sum(q**n) / n)
+
+        run = dict(step_size=1e-3, until=0.01)
+        for n in (2, 4, 6):
+            for start in (np.zeros(2), np.array([1e-7, 0.0]), np.array([1.0, -2.0])):
+                qddot.solve(power(n), "verlet", q0=start, **run).or_raise()
+                with self.assertRaisesRegex(ValueError, "potential: .*f is -dV/dq"):
+                    qddot.solve(power(n, 2.0), "verlet", q0=start, **run)
+
+    def test_a_force_without_a_potential_is_a_gradient(self):
+        def turning(rate, **check):
+            def force(q, f):
+                f[:] = -q + rate * np.array([-q[1], q[0], 0.0])
+
+            return qddot.System(np.ones(3), force, **check)
+
+        run = dict(step_size=1e-3, until=0.01, q0=np.array([1.0, 0.5, -2.0]))
+        qddot.solve(turning(0.0), "verlet", **run).or_raise()
+        for rate in (1e-2, -1.0, 100.0):
+            with self.assertRaisesRegex(ValueError, "force: it is no gradient of a potential"):
+                qddot.solve(turning(rate), "verlet", **run)
+            qddot.solve(turning(rate, check=False), "verlet", **run).or_raise()
+        # Networks of all kinds pass, also where their forces are large or vanish.
+        for scale in (1e-8, 1.0, 1e8):
+            chain = problems.Chain(5)
+            q0, v0 = chain.start()
+
+            def force(q, f, chain=chain, scale=scale):
+                chain.force(q, f)
+                f *= scale
+
+            system = qddot.System(np.full(5, scale), force, dimension=2)
+            qddot.solve(system, "verlet", q0=q0, v0=v0, step_size=1e-3, until=0.01).or_raise()
+
     def test_own_systems_are_measured(self):
         chain = problems.Chain(4)
         q0, v0 = chain.start()
