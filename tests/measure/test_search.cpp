@@ -5,6 +5,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "experiments/advice/hard_case.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/failure.hpp"
 #include "qddot/measure/advice/search.hpp"
@@ -146,6 +147,32 @@ BOOST_AUTO_TEST_CASE(where_stiff_springs_hold_an_answer_back_implicit_methods_ta
                  0.1 * search.runs().steps_of_verlet());
     }
   }
+}
+
+// A mass on a compressed spring stands in exact balance above its pin. Sideways, one rounding grows
+// as cosh(rate t), rate^2 = g / length.
+BOOST_AUTO_TEST_CASE(an_unstable_equilibrium_is_known_until_one_rounding_leaves_it) {
+  Scene scene{.name = "stands", .dimension = 2, .gravity = {0, -8, 0}};
+  scene.nodes = {{.pinned = true}, {.position = {0, 0.9375, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 128, .rest_length = 1}}};
+  const ReducedScene model(scene);
+  const double rate = std::sqrt(8 / 0.9375), accuracy = 1e-3;
+  for (const auto& [until, is_known] :
+       {std::pair(5.0, true), {8.5, true}, {10.0, false}, {13.0, false}}) {
+    Search search(model, until, AccuracyOf::positions, seconds, &scene);
+    const Trial* found = search.find(accuracy);
+    BOOST_TEST((found != nullptr) == is_known, "until " << until);
+    // A rounding is between half of eps and eps of a coordinate.
+    const double effect = 0x1p-53 * std::cosh(rate * until);
+    if (found) BOOST_TEST(search.check().bound(*found)->error > effect, "until " << until);
+  }
+  // A column that stands above its critical load, until one rounding is 0.02 of its size. A million
+  // roundings have thrown it over long before, and their effect is no million times as large.
+  const judged_advice::HardCase column = judged_advice::hard_case(34001181);
+  const ReducedScene standing = column.model();
+  Search search(standing, column.until, column.of, seconds, &column.scene);
+  BOOST_TEST((search.find(column.accuracy) == nullptr));
+  BOOST_TEST(search.check().is_hopeless(column.accuracy));
 }
 
 // An outcome may not depend on the time that runs take. A clock that counts its own calls stands

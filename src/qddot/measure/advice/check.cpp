@@ -95,23 +95,30 @@ void Check::condition_by_pair(const Trial& known, double between, const Trial& f
 }
 
 // A motion at rest does not feel one rounding, though roundings add up. The repetition is pushed by
-// many, as it was drawn, and the effect is in proportion. The run's own forces round as well.
+// many, as it was drawn, and the effect is in proportion. An unstable equilibrium may be left as
+// far as it can be: fewer roundings tell then. The run's own forces round as well.
 void Check::condition_rest(const Trial& judge) {
   const Stage& stage = runs_.stage();
   const Rules& rules = runs_.rules();
-  const double roundings = std::pow(2.0, 20);
   std::vector<double> differences;
-  if (stage.has_springs()) {
-    differences =
-        stage.distances_as_drawn(judge, *judge.method, judge.value,
-                                 {.seconds = runs_.seconds_left()}, {.roundings = roundings});
-  } else {
-    const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.roundings = roundings});
-    if (twin.reached_end()) differences = stage.distances(judge, twin);
+  double roundings = 1, largest = 0;
+  for (const int power : {20, 10, 0}) {
+    roundings = std::ldexp(1.0, power);
+    differences.clear();
+    if (stage.has_springs()) {
+      differences =
+          stage.distances_as_drawn(judge, *judge.method, judge.value,
+                                   {.seconds = runs_.seconds_left()}, {.roundings = roundings});
+    } else {
+      const Trial& twin = runs_.make_pushed(*judge.method, judge.value, {.roundings = roundings});
+      if (twin.reached_end()) differences = stage.distances(judge, twin);
+    }
+    if (differences.empty()) return;
+    largest = std::ranges::max(differences);
+    if (largest <= rules.small * rules.small) break;
   }
-  if (differences.empty()) return;
   for (double& difference : differences) difference /= roundings;
-  const double effect = std::max(machine_epsilon, std::ranges::max(differences));
+  const double effect = std::max(machine_epsilon, largest / roundings);
   conditioning_ = Conditioning{.effect = effect,
                                .share = rules.doubt_of_two() * rules.doubt * effect,
                                .differences = std::move(differences)};

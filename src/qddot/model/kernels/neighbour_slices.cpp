@@ -15,8 +15,14 @@ constexpr int window = 256;
 using Rows = std::array<std::vector<Neighbour>, slice_rows>;  // by places
 using Laws = std::array<SpringLaw, slice_rows>;
 
-// Sorts the few neighbours of a row, equal ones in the order they had.
+// Sorts neighbours, equal ones in the order they had. Most nodes have few, which are moved one by
+// one without any memory.
 void sort_by_place(std::vector<Neighbour>& row) {
+  constexpr std::size_t few = 64;
+  if (row.size() > few) {
+    std::ranges::stable_sort(row, {}, &Neighbour::point);
+    return;
+  }
   for (auto next = row.begin(); next != row.end(); ++next) {
     const auto place =
         std::ranges::upper_bound(row.begin(), next, next->point, {}, &Neighbour::point);
