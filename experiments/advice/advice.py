@@ -10,6 +10,7 @@ Three panels show ratios for all cases:
 """
 
 import math
+import statistics
 from dataclasses import dataclass
 
 from matplotlib.ticker import FixedLocator, NullFormatter
@@ -101,7 +102,7 @@ def dots(axes, cases, across, up):
 
 def lines(axes, values, of_what=""):
     """Where the median and nine tenths of the values end, drawn and in words."""
-    ends = [quantile(values, part) for part in (0.5, 0.9)]
+    ends = [statistics.median(values), quantile(values, 0.9)]
     for end, dashes in zip(ends, ((6, 2), (2, 2))):
         axes.axhline(end, color=INK, linewidth=1, dashes=dashes, zorder=2)
     words = f"{of_what}median {ends[0]:.3g}, nine in ten below {ends[1]:.3g}"
