@@ -6,6 +6,17 @@ all of qddot's methods and SUNDIALS', references, charts, advice, and answers wi
     solution = qddot.solve(cloth, "blanes_moan4", step_size=1e-3, until=0.5)
     sure = qddot.solve(cloth, accuracy=1e-4, until=0.5)
 
+What is called:
+
+    scenes, Scene, System    a motion: of a generator, of a file, or of your own forces
+    solve                    the motion by a method, or by the fastest one for an accuracy
+    advise                   the method to take for an accuracy
+    work_precision           the chart of speed against accuracy
+    reference                a certified end, and errors against it
+    convergence, energy_trend, exchange    order, drift, and energies of modes
+    modes, equilibrium, stability_limit, linear_step    what theory says
+    methods, method          all methods, and one by name
+
 Arrays are float64 in C order, (nodes, dimension) or, over time, (times, nodes, dimension). Units
 are SI. A run that fails returns a Solution with an outcome; its `or_raise()` raises an exception
 instead. Wrong arguments raise a ValueError with one sentence.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,7 +48,7 @@ class Advice:
 class Advices:
     """Advice for each accuracy, and the properties of the scene that decide it: the largest
     frequencies [rad/s] at the start and over the motion, Verlet's largest stable step [s], and the
-    horizon [s] of a chaotic motion."""
+    horizon [s] of a chaotic motion. It can be indexed and iterated over."""
 
     for_each: list[Advice]
     w_start: float
@@ -59,6 +59,15 @@ class Advices:
     horizon: float
     runs: int
     seconds: float
+
+    def __len__(self) -> int:
+        return len(self.for_each)
+
+    def __iter__(self) -> Iterator[Advice]:
+        return iter(self.for_each)
+
+    def __getitem__(self, index: int) -> Advice:
+        return self.for_each[index]
 
     def _rows(self) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = [

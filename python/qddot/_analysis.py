@@ -16,7 +16,7 @@ from qddot._starts import model_of
 from qddot._system import System
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Equilibrium:
     """A stable equilibrium, downhill from the start: the positions [m] of all nodes, and V there
     [J].
@@ -36,8 +36,14 @@ class Equilibrium:
     flat_directions: int
     iterations: int
 
+    def __repr__(self) -> str:
+        what = f"V = {self.potential:.6g} J, largest force {self.residual:.1e} N"
+        if self.outcome != "reached":
+            what = self.message
+        return f"<qddot.Equilibrium of {len(self.positions)} nodes, {self.outcome}: {what}>"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, repr=False, eq=False)
 class Modes:
     """The lowest natural modes about the start, by rank.
 
@@ -54,6 +60,14 @@ class Modes:
     def omega(self) -> Floats:
         """w [rad/s], or minus the growth rate [1/s] of a growing mode."""
         return np.copysign(np.sqrt(np.abs(self.squares)), self.squares)
+
+    def __repr__(self) -> str:
+        few = ", ".join(f"{w:.5g}" for w in self.omega[:5])
+        more = ", ..." if len(self.squares) > 5 else ""
+        return (
+            f"<qddot.Modes {len(self.squares)} of {self.finite}: w = {few}{more} rad/s; "
+            f"w_max = {self.omega_max:.5g} rad/s>"
+        )
 
 
 @dataclass(frozen=True)

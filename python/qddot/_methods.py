@@ -13,7 +13,7 @@ from qddot import _qddot
 from qddot._arrays import count, number
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Method:
     """A method (integrator): an entry of the registry.
 
@@ -35,6 +35,10 @@ class Method:
     needs: tuple[str, ...]
     takes: tuple[str, ...]
     stock_of: str
+
+    def __repr__(self) -> str:
+        order = f"order {self.order}" if self.order > 0 else "exact"
+        return f"<qddot.Method {self.name!r}: {order}, {self.knob}; {self.summary}>"
 
 
 @lru_cache(maxsize=None)

@@ -18,7 +18,7 @@ from qddot._starts import end_of, seconds_of
 from qddot._system import System
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Convergence:
     """Errors of a method at h, h/2, h/4, ... [s], and the order of each halving: log2 of the ratio
     of errors. An order is NaN if one of its two runs did not reach the end, or if an error is near
@@ -29,6 +29,12 @@ class Convergence:
     error_position: Floats
     error_velocity: Floats
     order: Floats
+
+    def __repr__(self) -> str:
+        lines = [f"{self.method}: h [s], error of positions, of velocities, order"]
+        for h, q, v, p in zip(self.step_size, self.error_position, self.error_velocity, self.order):
+            lines.append(f"{h:.3e}  {q:.2e}  {v:.2e}  {p:.2f}")
+        return "\n".join(lines)
 
 
 def convergence(
