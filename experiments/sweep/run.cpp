@@ -1,6 +1,9 @@
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <map>
+#include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,6 +25,9 @@ constexpr double patience_with_child = 45;  // [s]
 struct Shard {
   int number = 1, count = 1;
 };
+
+// The time for which a task is looked at again that another process is at, and between the looks.
+constexpr std::chrono::milliseconds longest_after_a_kill{2000}, between_looks{50};
 
 // How many tasks of a shard came to each end.
 struct ShardEnd {
@@ -99,17 +105,16 @@ ShardEnd run_all(const TaskFiles& files, const std::vector<Task>& mine,
                : files.state(*own->second);
   };
   ShardEnd end;
-  progress().begin(mine.size());
-  for (const Task& task : mine) {
+  // False if another process is at it.
+  const auto take = [&](const Task& task) {
     stop_if_interrupted();
     progress().now_at(fmt::format("{}, {}", task.folder, task.share));
     const TaskState state = files.state(task);
+    if (state.kind == TaskState::running) return false;
     const bool is_of_others = again && state.kind == TaskState::whole && state.machine != here;
     if (state.is_done() && !is_of_others) {
       files.tidy(task);
       ++end.done;
-    } else if (state.kind == TaskState::running) {
-      ++end.elsewhere;
     } else if (const TaskState reference = reference_of(task); !reference.is_done()) {
       if (end.waiting++ == 0)
         say_of(task, "its reference is not made; sweep run --stage references makes it");
@@ -119,6 +124,23 @@ ShardEnd run_all(const TaskFiles& files, const std::vector<Task>& mine,
       ++(measure_task(files, task, is_of_others) ? end.done : end.failed);
     }
     progress().finish(fmt::format("{}, {}", task.folder, task.share));
+    return true;
+  };
+  progress().begin(mine.size());
+  std::vector<const Task*> of_others;
+  for (const Task& task : mine) {
+    if (!take(task)) of_others.push_back(&task);
+  }
+  // The child of a process that was killed holds its task a moment longer.
+  const auto last_look = std::chrono::steady_clock::now() + longest_after_a_kill;
+  for (const Task* task : of_others) {
+    while (!take(*task)) {
+      if (std::chrono::steady_clock::now() > last_look) {
+        ++end.elsewhere;
+        break;
+      }
+      std::this_thread::sleep_for(between_looks);
+    }
   }
   progress().wipe();
   return end;

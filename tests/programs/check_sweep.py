@@ -1,5 +1,6 @@
 """Sweeps: tasks that any process may measure, killed or not, and what is said of failed ones."""
 
+import fcntl
 import functools
 import glob
 import itertools
@@ -273,6 +274,30 @@ class Tasks(Sweeps):
         write_journal(begun, [key.replace(*self.machines()), first])
         self.done(POINTS)
         self.assertNotIn(first, records(place))
+
+    def test_a_task_that_another_process_lets_go_soon_is_measured(self):
+        # The child of a process that was killed holds the lock of its task for a moment.
+        for is_let_go in (True, False):
+            shutil.rmtree("S", ignore_errors=True)
+            self.sweep(measured="points")
+            place = self.whole("chain", "verlet")
+            key, first, *_ = records(place)
+            begun = f"S/tasks/begun/{self.task('chain', 'verlet')}.{os.uname().nodename}.77.journal"
+            os.remove(place)
+            write_journal(begun, [key, first])
+            with open(begun, encoding="latin-1") as held:
+                fcntl.flock(held, fcntl.LOCK_EX)
+                self.holds(self.done("sweep status S").stdout, "1 running")
+                process = started(POINTS)
+                time.sleep(0.5 if is_let_go else 0)
+                if not is_let_go:
+                    out = process.communicate()[0]
+                    self.assertEqual(process.returncode, 3)
+                    self.assertIn("1 are measured elsewhere", out)
+            if is_let_go:
+                process.communicate()
+                self.assertEqual(process.returncode, 0)
+                self.assertIn(first, records(place))
 
     def test_two_that_run_the_same_shard_do_no_harm(self):
         self.sweep(measured="references")
