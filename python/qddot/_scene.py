@@ -163,12 +163,18 @@ class Scene:
         total_mass: float | None = None,
         bending_stiffness: float | None = None,
         scale: float | None = None,
+        weld: float | None = None,
+        rotation: Sequence[float] | None = None,
+        shift: Sequence[float] | None = None,
+        velocity: Sequence[float] | None = None,
         pins: Sequence[tuple[Sequence[float], Sequence[float]]] = (),
         gravity: Sequence[float] | None = None,
         until: float | None = None,
     ) -> Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its rest
-        length. `pins`: boxes (min, max) whose nodes are fixed."""
+        length. `weld`: the distance [m] within which vertices become one. `rotation`: the axis to
+        turn about, with the angle in degrees as its length; then `shift` [m] is added. `velocity`
+        [m/s]: of all nodes at the start. `pins`: boxes (min, max) whose nodes are fixed."""
         path = os.path.abspath(os.fspath(file))
         stem = os.path.splitext(os.path.basename(path))[0]
         lines = [f"name = {_quoted(stem)}"]
@@ -183,8 +189,11 @@ class Scene:
             total_mass=total_mass,
             bending_stiffness=bending_stiffness,
             scale=scale,
+            weld=weld,
         )
         lines += [f"{name} = {float(x)!r}" for name, x in numbers.items() if x is not None]
+        vectors = dict(rotation=rotation, shift=shift, velocity=velocity)
+        lines += [f"{name} = {_list(x)}" for name, x in vectors.items() if x is not None]
         for low, high in pins:
             lines += ["[[mesh.pin]]", f"min = {_list(low)}", f"max = {_list(high)}"]
         text = "\n".join(lines) + "\n"

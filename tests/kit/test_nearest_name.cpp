@@ -27,6 +27,7 @@ BOOST_AUTO_TEST_CASE(one_wrong_letter_names_the_method) {
   }
   BOOST_TEST(qddot::nearest_name("leapfrog", names) == "");
   BOOST_TEST(qddot::nearest_name("", names) == "");
+  BOOST_TEST(qddot::nearest_name("lu", {"klu"}) == "");
   BOOST_TEST(qddot::nearest_name(std::string(100'000, 'v'), names) == "");
   BOOST_TEST(qddot::nearest_name("verlet", {}) == "");
 }

@@ -278,6 +278,14 @@ class Meaning(Programs):
         self.assertEqual(list(mesh.pinned), [True, False, False, False])
         self.assertTrue(np.array_equal(mesh.positions[1], [2, 0, 0]))
         self.assertEqual(mesh.until, 1)
+        cut = text + "v 1 0 0\nv 0 0 0\nv 0 -1 0\nf 5 6 7\n"
+        welded = qddot.Scene.from_mesh(
+            write("cut.obj", cut), stiffness=10, node_mass=1, weld=1e-9, rotation=[0, 0, 90],
+            shift=[0, 0, 1], velocity=[1, 2, 3],
+        )  # fmt: skip
+        self.assertTrue(np.array_equal(welded.positions[1], [0, 1, 1]))
+        self.assertEqual(len(welded.mass), 5)
+        self.assertTrue(np.array_equal(welded.velocities, np.tile([1.0, 2, 3], (5, 1))))
 
     def test_explanations_and_methods(self):
         chain = problems.Chain(3).scene()

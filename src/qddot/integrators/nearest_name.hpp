@@ -32,7 +32,7 @@ inline std::string nearest_name(std::string_view name, const std::vector<std::st
   const auto apart = [&](const std::string& other) { return letters_apart(name, other); };
   if (names.empty() || name.size() > longest) return "";
   const std::string& nearest = *std::ranges::min_element(names, {}, apart);
-  return 3 * apart(nearest) <= nearest.size() ? nearest : "";
+  return 3 * apart(nearest) <= std::min(name.size(), nearest.size()) ? nearest : "";
 }
 
 }  // namespace qddot

@@ -108,17 +108,19 @@ void warn_of_loose_nodes(Scene& scene) {
       loose.size() == 1 ? "it keeps" : "they keep"));
 }
 
+void require_no_mesh(const std::string& path) {
+  if (!mesh::is_mesh_file(path)) return;
+  throw InvalidInput(fmt::format(
+      "{}: it is a mesh, not a scene; allowed are scene files, which name a mesh in a table [mesh] "
+      "with file = \"{}\"",
+      path, std::filesystem::path(path).filename().string()));
+}
+
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::string& path,
                   const std::filesystem::path& folder, const SceneLimits& limits,
                   const TextSource& read) {
-  if (mesh::is_mesh_file(path))
-    throw InvalidInput(
-        fmt::format("{}: it is a mesh, not a scene; allowed are scene files, which name a mesh in "
-                    "a table [mesh] "
-                    "with file = \"{}\"",
-                    path, std::filesystem::path(path).filename().string()));
   const toml::table content = parse_toml(text, path);
   const TomlTable file(content, path);
   require_one_origin(file);
@@ -144,6 +146,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
 }
 
 Scene read_scene(const std::string& path) {
+  require_no_mesh(path);
   return parse_scene(read_text(path), path, std::filesystem::path(path).parent_path());
 }
 
@@ -153,6 +156,7 @@ Scene load_scene(const std::string& name_or_path, const TextSource& read,
     return generate(*generator, {}, name_or_path, limits);
   std::error_code ignored;
   if (std::filesystem::exists(name_or_path, ignored)) {
+    require_no_mesh(name_or_path);
     return parse_scene(read(name_or_path), name_or_path,
                        std::filesystem::path(name_or_path).parent_path(), limits, read);
   }
