@@ -1,7 +1,6 @@
-#include "qddot/integrators/nearest_name.hpp"
-
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/integrators/nearest_name.hpp"
 #include "qddot/integrators/registry.hpp"
 
 BOOST_AUTO_TEST_SUITE(nearest_name)

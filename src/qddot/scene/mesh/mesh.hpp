@@ -23,7 +23,7 @@ struct Mesh {
   // to one tetrahedron only. Triangles of the last kind face outwards if the tetrahedron has a
   // positive volume.
   std::vector<std::array<std::size_t, 3>> faces;
-  // What the file has that is not read and may matter: sentences without the file's name.
+  // Sentences, without the name of the file, about parts of it that are not read and may matter.
   std::vector<std::string> warnings{};
 
   // Warns once of a section that is not read, and that nobody knows to mean nothing.
