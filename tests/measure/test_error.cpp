@@ -1,10 +1,12 @@
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/measure/motion/error.hpp"
 #include "qddot/scene/reduce/part.hpp"
+#include "tests/integrators/own_system.hpp"
 
 BOOST_AUTO_TEST_SUITE(error)
 
@@ -136,6 +138,23 @@ BOOST_AUTO_TEST_CASE(positions_alone_have_the_same_error) {
   std::swap(off.q[0], off.q[1]);
   BOOST_TEST(std::isnan(position_error(two, off, two.initial(), scales)));
   BOOST_TEST(std::isnan(errors_between(two, off, two.initial(), 0, scales).position));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_no_number_is_no_small_error_of_an_own_system) {
+  const auto system = std::make_shared<const ChainWithStiffness>();
+  const Index n = system->size();
+  const ReducedScene own(system, {0, Vec::Zero(n), Vec::Zero(n)}, 1);
+  Scales scales;
+  State off = own.initial();
+  off.q.setOnes();
+  extend(scales, own, own.initial());
+  extend(scales, own, off);
+  BOOST_TEST(position_error(own, off, own.initial(), scales) == 1);
+  for (Index i = 0; i < n; ++i) {
+    State lost = off;
+    lost.q[i] = std::numeric_limits<double>::quiet_NaN();
+    BOOST_TEST(std::isnan(position_error(own, lost, own.initial(), scales)), "unknown " << i);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_part_that_only_rounds_is_measured_by_the_others) {

@@ -257,14 +257,19 @@ class Tasks(Sweeps):
         self.signalled(process, signal.SIGKILL)
         wait(lambda: not is_running())
 
-    def test_points_of_a_task_that_was_killed_are_kept(self):
+    def begun_task(self, host):
+        """Makes a measured sweep look as if a process there had been killed after the first point
+        of a task; the file of the whole task, the begun one, and its records."""
         self.sweep(measured="points")
-        # As if a process had been killed after its first point.
         place = self.whole("chain", "verlet")
         key, first, *_ = records(place)
-        begun = f"S/tasks/begun/{self.task('chain', 'verlet')}.elsewhere.77.journal"
+        begun = f"S/tasks/begun/{self.task('chain', 'verlet')}.{host}.77.journal"
         os.remove(place)
         write_journal(begun, [key, first])
+        return place, begun, key, first
+
+    def test_points_of_a_task_that_was_killed_are_kept(self):
+        place, begun, key, first = self.begun_task("elsewhere")
         self.holds(self.done("sweep status S").stdout, "1 begun and ended")
         self.done(POINTS)
         self.assertIn(first, records(place))
@@ -279,12 +284,7 @@ class Tasks(Sweeps):
         # The child of a process that was killed holds the lock of its task for a moment.
         for is_let_go in (True, False):
             shutil.rmtree("S", ignore_errors=True)
-            self.sweep(measured="points")
-            place = self.whole("chain", "verlet")
-            key, first, *_ = records(place)
-            begun = f"S/tasks/begun/{self.task('chain', 'verlet')}.{os.uname().nodename}.77.journal"
-            os.remove(place)
-            write_journal(begun, [key, first])
+            place, begun, _, first = self.begun_task(os.uname().nodename)
             with open(begun, encoding="latin-1") as held:
                 fcntl.flock(held, fcntl.LOCK_EX)
                 self.holds(self.done("sweep status S").stdout, "1 running")

@@ -270,8 +270,8 @@ void Reduced::expand_own(const State& state, std::vector<Node>& nodes) const {
 std::vector<double> Reduced::largest_by_part(const Vec& x) const {
   if (is_own_) {
     if (x.size() == 0) return {};
-    return {std::sqrt(
-        x.reshaped(dimension_, x.size() / dimension_).colwise().squaredNorm().maxCoeff())};
+    const auto squares = x.reshaped(dimension_, x.size() / dimension_).colwise().squaredNorm();
+    return {std::sqrt(squares.maxCoeff<Eigen::PropagateNaN>())};
   }
   std::vector<double> largest;
   if (!series_.empty()) return largest;
