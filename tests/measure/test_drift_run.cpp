@@ -52,6 +52,17 @@ bool holds_zero(const Interval& interval) { return !interval.excludes_zero(); }
 
 }  // namespace
 
+BOOST_AUTO_TEST_CASE(explicit_eulers_growth_is_that_of_theory_where_it_blows_up_late_or_early) {
+  // A step multiplies the energy of a vibration by 1 + (h w)^2; here w = 10 rad/s.
+  const Study oscillator("oscillator");
+  for (const double steps : {3e4, 4e4, 2e5}) {  // to e^3, e^4 and e^20 times the start
+    const DriftRun run = oscillator.of("explicit_euler", 1e-3, steps);
+    BOOST_TEST(verdict_name(run.energy.verdict) == "blows_up");
+    BOOST_TEST(run.energy.rate.value == std::log1p(1e-4) / 1e-3,
+               boost::test_tools::tolerance(1e-6));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(over_a_million_steps_verlet_does_not_drift_and_rk4_does) {
   const Study orbit("orbit");
   const DriftRun verlet = orbit.of("verlet", 0.02, 1e6);

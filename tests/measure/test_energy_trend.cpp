@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(a_smaller_slope_may_be_a_part_of_a_slow_sine_and_is_said_to
     const Trend trend = judged(series([&](double t) { return vibrates(t) + slope * t; }));
     BOOST_TEST((trend.verdict == Verdict::undecided || trend.verdict == Verdict::drifts));
     if (trend.verdict == Verdict::undecided) {
-      BOOST_TEST(says(trend, "too short to tell: a drift, or an oscillation with a period of"));
+      BOOST_TEST(says(trend, "so far a drift, or an oscillation with a period of"));
       BOOST_TEST(trend.needed >= 2 * trend.slow_period);
     }
     misses += !holds(trend.drift, slope);
@@ -178,8 +178,8 @@ BOOST_AUTO_TEST_CASE(a_random_walk_is_no_drift_and_its_size_is_found) {
 BOOST_AUTO_TEST_CASE(the_same_walk_a_million_roundings_large_is_not_called_round_off) {
   const Trend trend = judged(walk(1e-10, 1), {.rounding = 1e-16, .step = h});
   BOOST_TEST(verdict_name(trend.verdict) == "undecided");
-  BOOST_TEST(says(trend, "too short to tell: a random walk of"));
-  BOOST_TEST(says(trend, "or an oscillation that remembers"));
+  BOOST_TEST(says(trend, "too short to tell: run it to t = "));
+  BOOST_TEST(says(trend, "so far it wanders by"));
   BOOST_TEST(says(trend, "no drift"));
   BOOST_TEST(trend.needed >= 4 * duration);
 }
@@ -324,6 +324,26 @@ BOOST_AUTO_TEST_CASE(a_blow_up_has_its_time_and_rate) {
       verdict_name(
           judged(series([&](double t) { return vibrates(t) + 1e-12 * std::exp(rate * t); }, 450))
               .verdict) == "bounded");
+}
+
+BOOST_AUTO_TEST_CASE(the_rate_of_a_steady_growth_is_that_until_the_blow_up) {
+  // 40 times the energy at the end of the run: less than is needed for a fit of a sudden rise.
+  const double rate = std::log(40) / duration;
+  const Trend slow = judged(series([&](double t) { return std::expm1(rate * t); }));
+  BOOST_TEST(verdict_name(slow.verdict) == "blows_up");
+  BOOST_TEST(slow.rate.value == rate, boost::test_tools::tolerance(1e-3));
+  BOOST_TEST(says(slow, "rate"));
+  // Another rate after the blow-up, as where springs pass through zero length, changes nothing.
+  const double fast = 10 * rate, bend = std::log(11.5) / fast;
+  const auto bent = [&](double t) {
+    return std::expm1(fast * std::min(t, bend) + 0.8 * fast * std::max(t - bend, 0.0));
+  };
+  const Trend first = judged(series(bent));
+  BOOST_TEST(first.rate.value == fast, boost::test_tools::tolerance(1e-3));
+  BOOST_TEST(first.rate.holds(fast));
+  // If a third of the energy grows, no one rate is right until then; later its own is.
+  const Trend part = judged(series([&](double t) { return std::expm1(fast * t) / 3; }));
+  BOOST_TEST(part.rate.value == fast, boost::test_tools::tolerance(0.02));
 }
 
 BOOST_AUTO_TEST_CASE(a_run_that_diverged_between_two_samples_has_blown_up) {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "qddot/algebra/straight_line.hpp"
+
 namespace qddot::inline measure {
 namespace {
 
@@ -42,9 +44,13 @@ constexpr double exponential_part = 0.1;
 // A loss is fitted until this fraction of the excess is left: only slow modes remain then. Less
 // than `tiny` counts as zero. An excess that returns to half was no loss.
 constexpr double nearly_gone = 0.1, tiny = 1e-3, half_back = 0.5;
-// A blow-up is fitted between these errors: the growing energy is far larger than the energy
-// before.
-constexpr double growing = 100, grown = 1e8;
+// A blow-up that has no one rate from the start on is fitted between these excesses: the growing
+// energy is far larger than the energy before. If there are too few samples, the rate is that since
+// the excess was last below `doubled`.
+constexpr double growing = 100, grown = 1e8, doubled = 2;
+// The excess grows by one rate if ln x is within this of a line until the blow-up. If only the part
+// a of it grows, x = 1 - a + a exp(rate t), it is while a > 0.9, where the line's rate is 4 % less.
+constexpr double steady = 0.02;
 // The roundings of the energy in one evaluation and in one step; both sum over many springs.
 constexpr double roundings_of_energy = 100, roundings_of_step = 10;
 
@@ -118,15 +124,20 @@ class Excess {
     }
   }
 
+  // Fits the growth of a run that blew up. Where all of the energy grows from the start on, the fit
+  // is until then: beyond it, the motion is another one, whose rate may differ.
   void fit_blow_up(Trend& trend) const {
-    const auto end =
+    const auto end = std::ranges::find_if(
+        samples_, [&](const Sample& sample) { return sample.t > trend.blow_up_time; });
+    if (grows_steadily({samples_.begin(), end}, trend)) return;
+    const auto too_large =
         std::ranges::find_if(samples_, [&](const Sample& sample) { return of(sample) > grown; });
-    auto begin = end;
-    while (begin != samples_.begin() && of(*(begin - 1)) > growing) --begin;
-    const std::span<const Sample> rise(begin, end);
-    if (rise.empty()) return;
-    take(trend, rise, rise.front().t);
-    if (trend.rate.value != 0 || rise.size() < 2) return;
+    if (const auto rise = last_rise(growing, too_large); !rise.empty()) {
+      take(trend, rise, rise.front().t);
+      if (trend.rate.value != 0) return;
+    }
+    const auto rise = last_rise(doubled, too_large);
+    if (rise.size() < 2) return;
     take_alone(trend,
                std::log(of(rise.back()) / of(rise.front())) / (rise.back().t - rise.front().t));
   }
@@ -134,6 +145,36 @@ class Excess {
  private:
   Exponential fit(std::span<const Sample> window, double begin) const {
     return fit_exponential(in_blocks(window, begin, [&](const Sample& s) { return of(s); }));
+  }
+
+  // The samples before `end` since the excess was last below `from`.
+  std::span<const Sample> last_rise(double from, std::span<const Sample>::iterator end) const {
+    auto begin = end;
+    while (begin != samples_.begin() && of(*(begin - 1)) > from) --begin;
+    return {begin, end};
+  }
+
+  // Whether the whole excess grows by one rate in the window; takes that rate.
+  bool grows_steadily(std::span<const Sample> window, Trend& trend) const {
+    const Exponential fit = this->fit(window, 0);
+    if (!(fit.rate.low > 0)) return false;
+    const auto error = [&](const Sample& s) {
+      return std::abs(std::log(of(s)) - fit.level - fit.rate.value * (s.t - fit.middle));
+    };
+    if (std::ranges::any_of(window, [&](const Sample& s) { return !(error(s) < steady); })) {
+      return false;
+    }
+    take(trend, window, 0);
+    // Means of an exponential over blocks are a little above it; the samples themselves are not.
+    std::vector<double> t, logarithm;
+    for (const Sample& s : window) {
+      t.push_back(s.t);
+      logarithm.push_back(std::log(of(s)));
+    }
+    const double moved = straight_line(t, logarithm).slope - trend.rate.value;
+    for (double* bound : {&trend.rate.value, &trend.rate.low, &trend.rate.high}) *bound += moved;
+    trend.drift = scaled(trend.rate, scales_.excess);
+    return true;
   }
 
   // Whether the fall or rise is over: the last part of the window is level.

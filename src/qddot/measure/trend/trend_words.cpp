@@ -56,13 +56,14 @@ std::string undecided_words(const Trend& trend) {
     what = fmt::format("an oscillation with a period of about {:.2g} s, or a change", trend.period);
   } else if (trend.colour == Colour::undecided) {
     what = fmt::format(
-        "a random walk of {:.1e} a root second, or an oscillation that remembers {:.2g} s or more",
+        "it wanders by {:.1e} in a second and with the root of the time, unless it returns after "
+        "{:.2g} s or more",
         trend.walk, trend.memory);
   } else {
     what = "an oscillation that widens, or beats slowly";
   }
-  return fmt::format("too short to tell: {} (a run to t = {:.1g} s would); oscillates by {:.1e}, ",
-                     what, trend.needed, trend.oscillation) +
+  return fmt::format("too short to tell: run it to t = {:.1g} s; so far {}; oscillates by {:.1e}, ",
+                     trend.needed, what, trend.oscillation) +
          (may_be_sine(trend) ? "slope " + drift_words(trend.drift) : no_drift_words(trend.drift));
 }
 
