@@ -155,6 +155,12 @@ std::string json(const Chart& chart, const FrontRow& row) {
       others(chart, row), json(row.stability_margin), list(warnings(row, chart.reference)));
 }
 
+std::vector<std::string> caveats_of(const Chart& chart, const StudyEnd& end) {
+  std::vector<std::string> all = caveats(chart.reference, end);
+  if (const std::string words = disturbance_in_words(chart); !words.empty()) all.push_back(words);
+  return all;
+}
+
 }  // namespace
 
 const char* const chart_beginning = "{\"format\": 1, \"judged_by\": ";
@@ -176,7 +182,7 @@ std::string chart_record(const Chart& chart, const std::string& scene, const Stu
  "crossings": {}}}
 )",
       chart_beginning, json(name(chart.judge)), scene, json(chart.reference.end.t),
-      bound > 0 ? json(bound) : null, list(chart.accuracies), list(caveats(chart.reference, end)),
+      bound > 0 ? json(bound) : null, list(chart.accuracies), list(caveats_of(chart, end)),
       displacements(chart.reference.scales),
       list(chart.points,
            [](const Point& point) { return json(knob_in_words(*point.method, point.value)); }),

@@ -43,6 +43,19 @@ std::vector<std::string> small_margins(const std::vector<FrontRow>& front) {
   return sentences;
 }
 
+// A sentence for each winner that another method may beat.
+std::vector<std::string> close_times(const std::vector<FrontRow>& front) {
+  std::vector<std::string> sentences;
+  for (const FrontRow& row : front) {
+    const Point* rival = row.runner_up();
+    if (!rival || !may_be_faster(*rival, *row.fastest)) continue;
+    sentences.push_back(fmt::format("{:.0e}: {} may be as fast ({}, at least {}), as times vary",
+                                    row.accuracy, rival->method->name, time_in_words(rival->time),
+                                    time_in_words(rival->time_min)));
+  }
+  return sentences;
+}
+
 }  // namespace
 
 const std::vector<std::string> front_columns = {"scene",  "accuracy",  "method",
@@ -95,6 +108,10 @@ void print_front(const std::string& scene, const Chart& chart) {
     }
   }
   for (const std::string& warning : small_margins(chart.front)) fmt::print("{}\n", warning);
+  for (const std::string& warning : close_times(chart.front)) fmt::print("{}\n", warning);
+  if (const std::string words = disturbance_in_words(chart); !words.empty()) {
+    fmt::print("{}\n", words);
+  }
   if (has_doubts)
     fmt::print("? known only to within {:.1e}, the error bound of the reference itself\n",
                certified(reference));

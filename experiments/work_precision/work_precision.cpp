@@ -10,7 +10,8 @@
 //     the effect of a push out of symmetry.
 //  2. Each method runs from coarse to fine on one thread: once untimed unless that takes long, then
 //     several times timed. One more run measures the largest energy error and the momenta over
-//     time.
+//     time. The points that decide are timed again when all methods are done; the smaller median
+//     counts. --clock processor leaves out the time of other programs.
 //  3. points.csv has every point, failed ones with the reason. front.csv has, for each accuracy
 //     from 1e-1 to 1e-9, the fastest method known to reach it. Accuracy is that of the positions at
 //     the end. Beyond the horizon of a chaotic motion it is that of the energy over time.
@@ -30,6 +31,7 @@
 #include "experiments/record/chart_record.hpp"
 #include "experiments/work_precision/chart_files.hpp"
 #include "qddot/measure/speed/chart_words.hpp"
+#include "qddot/measure/speed/front_again.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
 
 namespace qddot::work_precision {
@@ -99,6 +101,7 @@ int main(int argc, char** argv) {
     const auto origin = p.origin(subject);
     std::optional<Reference> reference;
     std::vector<std::vector<Point>> taken;  // by method
+    std::vector<Point> again;
     const auto measure = [&](Study& study) {
       progress().stage("making the reference");
       reference = study.measures(reference_share) ? reference_for(subject, p.folder(), origin)
@@ -119,10 +122,19 @@ int main(int argc, char** argv) {
         measure_ladder(*method, subject.reduced, subject.until, *reference, effort, take, is_last);
         progress().finish(method->name + " is done");
       }
+      if (study.is_divided()) return;
+      effort.watch = nullptr;
+      effort.recall = points_of(study, "again ");
+      again =
+          time_front_again(from_coarse_to_fine(taken), *reference, asked, [&](const Point& point) {
+            return measure_point(*point.method, point.value, subject.reduced, subject.until,
+                                 *reference, effort);
+          });
     };
     const auto report = [&](const Study& study) {
       const std::string& name = subject.drawn.name;
-      const std::vector<Point> points = from_coarse_to_fine(taken);
+      std::vector<Point> points = from_coarse_to_fine(taken);
+      take_smaller_times(points, again);
       const StudyEnd end{.interrupted_by = study.interrupted_by(),
                          .are_times_of_work = study.are_times_of_work()};
       if (reference) {

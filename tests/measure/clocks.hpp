@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ctime>
-
 #include "qddot/measure/motion/timing.hpp"
 
 namespace qddot {
@@ -17,13 +15,7 @@ struct ClockOfTest {
 
 // The processor's time for this process, so that measurements find the same beside other processes.
 struct ProcessorClock : ClockOfTest {
-  ProcessorClock() : ClockOfTest(now) {}
-  static std::chrono::steady_clock::time_point now() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return std::chrono::steady_clock::time_point(std::chrono::seconds(t.tv_sec) +
-                                                 std::chrono::nanoseconds(t.tv_nsec));
-  }
+  ProcessorClock() : ClockOfTest(processor_time) {}
 };
 
 // Each look at the clock takes a microsecond and nothing else takes time, so that measurements find

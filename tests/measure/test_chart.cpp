@@ -122,6 +122,27 @@ BOOST_AUTO_TEST_CASE(an_uncertain_error_is_told_and_reaches_nothing_by_luck) {
   BOOST_TEST(words[0] == "error known only to within 3.0e-04, as the reference itself is");
 }
 
+BOOST_AUTO_TEST_CASE(winners_that_the_clock_cannot_tell_are_named) {
+  const auto timed = [](const char* method, double time, double least) {
+    Point one = point(method, 1e-4, time);
+    one.time_min = least;
+    return one;
+  };
+  const auto said = [](const std::vector<Point>& points) {
+    const Chart chart = made(points);
+    return warnings(chart.front[0], chart.reference);
+  };
+  const auto close = said({timed("verlet", 1, 0.95), timed("symmetric6", 1.5, 0.9)});
+  BOOST_TEST_REQUIRE(close.size() == 1u);
+  BOOST_TEST(close[0].starts_with("symmetric6 may be as fast"));
+  BOOST_TEST(said({timed("verlet", 1, 0.95), timed("symmetric6", 1.1, 0.9)}).empty());
+  BOOST_TEST(said({timed("verlet", 1, 0.95), timed("symmetric6", 3, 1.1)}).empty());
+  // More than a tenth of the points vary.
+  BOOST_TEST(disturbance_in_words(made({timed("verlet", 1, 0.7), timed("rk4", 1, 1)}))
+                 .starts_with("The times of 1 of 2 points vary"));
+  BOOST_TEST(disturbance_in_words(made(std::vector<Point>(10, timed("rk4", 1, 0.9)))) == "");
+}
+
 BOOST_AUTO_TEST_CASE(an_accuracy_that_nothing_reached_has_no_row) {
   const Chart chart = made({});
   BOOST_TEST_REQUIRE(chart.front.size() == 3u);

@@ -2,6 +2,7 @@
 
 #include "qddot/integrators/base/fixed_step.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/speed/front_again.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "tests/measure/clocks.hpp"
@@ -45,6 +46,19 @@ class Slow final : public Still {
     Still::start(state);
     MadeClock::pass(0.101);
   }
+};
+
+// A run takes 0.2 s, times the next of `left` while there are any.
+class Uneven final : public Still {
+  using Still::Still;
+  void start(const State& state) override {
+    Still::start(state);
+    MadeClock::pass(left.empty() ? 0.2 : 0.2 * left.front());
+    if (!left.empty()) left.erase(left.begin());
+  }
+
+ public:
+  static inline std::vector<double> left{};
 };
 
 // All runs but the first one fail.
@@ -146,6 +160,60 @@ BOOST_AUTO_TEST_CASE(only_a_long_run_is_its_own_warm_up) {
         repeats);
     BOOST_TEST(Still::runs > repeats);
   }
+}
+
+BOOST_AUTO_TEST_CASE(times_that_vary_are_taken_more_often) {
+  const MadeClock clock;
+  // Three of the first five runs are twice as long as all later ones.
+  const auto taken = [](std::vector<double> lengths) {
+    Uneven::left = std::move(lengths);
+    return measure_point(made_of<Uneven>(), until, orbit(), until, reference(),
+                         {.seconds = 60, .repeats = 5});
+  };
+  const Point steady = taken({});
+  BOOST_TEST(steady.timed_runs == 5);
+  BOOST_TEST(!is_disturbed(steady));
+  const Point short_burst = taken({2, 2, 2, 1});
+  BOOST_TEST(short_burst.timed_runs == 7);  // then four of seven are as short as the least
+  BOOST_TEST(short_burst.time == 0.2, boost::test_tools::tolerance(1e-6));
+  const Point long_burst = taken({1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2});
+  BOOST_TEST(long_burst.timed_runs == 15);
+  BOOST_TEST(is_disturbed(long_burst));
+  BOOST_TEST(long_burst.time == 2 * long_burst.time_min, boost::test_tools::tolerance(1e-6));
+}
+
+BOOST_AUTO_TEST_CASE(what_decides_a_chart_is_timed_again_and_the_smaller_median_counts) {
+  const auto point = [](const char* name, double error, double time, double least) {
+    return Point{.method = find_method(name),
+                 .value = 0.1,
+                 .outcome = Outcome::reached_end,
+                 .errors = {.position = error, .velocity = 0, .energy = 0},
+                 .time = time,
+                 .time_min = least,
+                 .timed_runs = 5};
+  };
+  Reference known;
+  known.end.t = 2;
+  known.certified = {.position = 1e-12, .velocity = 1e-12, .energy = 1e-12};
+  // The second would win without what disturbed it, the third would not, and the fourth is coarse.
+  std::vector<Point> points = {point("verlet", 1e-4, 1, 0.95), point("symmetric6", 1e-4, 3, 0.9),
+                               point("rk4", 1e-4, 3, 2.5), point("ida", 0.5, 0.1, 0.1)};
+  std::vector<std::string> taken;
+  const auto again = time_front_again(points, known, {1e-3}, [&](const Point& first) {
+    taken.push_back(first.method->name);
+    Point second = first;
+    second.time = second.time_min = first.method->name == "verlet" ? 1.1 : 0.8;
+    return second;
+  });
+  std::ranges::sort(taken);
+  BOOST_TEST(taken == (std::vector<std::string>{"symmetric6", "verlet"}),
+             boost::test_tools::per_element());
+  take_smaller_times(points, again);
+  BOOST_TEST(points[0].time == 1);
+  BOOST_TEST(points[1].time == 0.8);
+  BOOST_TEST(points[1].timed_runs == 10);
+  BOOST_TEST(points[2].time == 3);
+  BOOST_TEST(fastest_at_each_accuracy(points, known, {1e-3})[0].fastest == &points[1]);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -9,11 +9,13 @@
 
 namespace qddot::inline measure {
 
-// The clock that measurements and their limits go by: that of the wall. A test may set another, as
-// the processor's, which stands still while other processes run.
+// The clock that measurements and their limits go by: that of the wall, unless another is set, as
+// the processor's.
 inline std::atomic<std::chrono::steady_clock::time_point (*)()> clock_in_use =
     std::chrono::steady_clock::now;
-// The time on that clock.
+// The processor's time for this process, which stands still while other programs run.
+std::chrono::steady_clock::time_point processor_time();
+// The time on the clock in use.
 inline std::chrono::steady_clock::time_point clock_now() { return clock_in_use.load()(); }
 
 // The time [s] since `start`.
@@ -53,7 +55,7 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-// A duration [s] in words, from "5.2 s" to "3.1e+05 years".
+// A duration [s] in words, from "5.2 s" to "3.1e+05 years" and "an infinite time".
 std::string duration_in_words(double seconds);
 
 }  // namespace qddot::inline measure

@@ -1,5 +1,6 @@
 #include "qddot/measure/speed/chart_words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -10,6 +11,9 @@
 
 namespace qddot::inline measure {
 namespace {
+
+// So many of a chart's points may vary in their times without a word.
+constexpr double largest_disturbed_part = 0.1;
 
 // An error above this says only that the motion is lost.
 constexpr double worst_error = 3;
@@ -104,10 +108,27 @@ std::string margin_in_words(double stability_margin) {
                      stability_margin < 0 ? "above" : "below");
 }
 
+std::string disturbance_in_words(const Chart& chart) {
+  const auto timed = std::ranges::count_if(chart.points, is_timed);
+  const auto disturbed = std::ranges::count_if(
+      chart.points, [](const Point& point) { return is_timed(point) && is_disturbed(point); });
+  if (static_cast<double>(disturbed) <= largest_disturbed_part * static_cast<double>(timed))
+    return "";
+  return fmt::format(
+      "The times of {} of {} points vary by more than a quarter between runs, as beside other "
+      "programs:\nmeasure on an idle machine, or take --clock processor.",
+      disturbed, timed);
+}
+
 std::vector<std::string> warnings(const FrontRow& row, const Reference& reference) {
   std::vector<std::string> words;
   if (!row.fastest) return words;
   if (row.stability_margin < small_margin) words.push_back(margin_in_words(row.stability_margin));
+  if (const Point* rival = row.runner_up(); rival && may_be_faster(*rival, *row.fastest)) {
+    words.push_back(
+        fmt::format("{} may be as fast: times vary between runs, as beside other programs",
+                    rival->method->name));
+  }
   if (judged(*row.fastest, reference).is_uncertain) {
     words.push_back(fmt::format("error known only to within {:.1e}, as the reference itself is",
                                 certified(reference)));

@@ -28,6 +28,9 @@ std::string margin_in_words(double stability_margin);
 // The warnings on the fastest point of a row, in clauses.
 std::vector<std::string> warnings(const FrontRow& row, const Reference& reference);
 
+// A sentence of two lines if the times of many points vary between runs; else empty.
+std::string disturbance_in_words(const Chart& chart);
+
 // The words on a view's floor; empty if it has none.
 std::string floor_in_words(const ChartView& view);
 

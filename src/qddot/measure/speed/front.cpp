@@ -39,6 +39,10 @@ bool is_timed(const Point& point) {
   return point.outcome == Outcome::reached_end && point.time > 0 && std::isfinite(point.time);
 }
 
+bool may_be_faster(const Point& rival, const Point& fastest) {
+  return (is_disturbed(rival) || is_disturbed(fastest)) && rival.time_min < fastest.time;
+}
+
 void keep_faster(const Point*& fastest, const Point& point) {
   if (!fastest || point.time < fastest->time) fastest = &point;
 }

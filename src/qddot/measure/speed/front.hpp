@@ -29,6 +29,9 @@ struct FrontRow {
 // Whether the run reached the end and its time is known.
 bool is_timed(const Point& point);
 
+// Whether the rival is slower by less than the times of either vary between runs.
+bool may_be_faster(const Point& rival, const Point& fastest);
+
 // Replaces `fastest`, which may be nullptr, by `point` if `point` takes less time.
 void keep_faster(const Point*& fastest, const Point& point);
 

@@ -15,6 +15,8 @@ namespace {
 // Runs shorter than this [s] are timed in batches. The clock's own cost (some tens of ns) then
 // stays below a thousandth.
 constexpr double shortest_sample = 1e-4;
+// A disturbed point has so many times the timed runs of another.
+constexpr int most_rounds = 3;
 // A first run of at least this time [s] counts as a sample: its warm-up is a small part of it.
 constexpr double own_warm_up = 0.1;
 // The time limit [s] of a watched run. It is as long as the run before and is not timed.
@@ -42,10 +44,17 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
 
   const int batch = static_cast<int>(std::ceil(std::min(shortest_sample / first, 1e5)));
   std::vector<double> times;
-  if (first >= own_warm_up) times.push_back(first);
+  if (first >= own_warm_up) {
+    times.push_back(first);
+    point.time = point.time_min = first;
+  }
   double spent = times.empty() ? 0 : first;
-  while (std::ssize(times) < effort.repeats &&
-         (times.empty() || spent + first < effort.seconds / 2)) {
+  const auto is_done = [&] {
+    const auto taken = std::ssize(times);
+    return taken >= effort.repeats &&
+           (!is_disturbed(point) || taken >= most_rounds * effort.repeats);
+  };
+  while (!is_done() && (times.empty() || spent + first < effort.seconds / 2)) {
     const double sample = seconds_of([&] {
       for (int i = 0; i < batch && summary.outcome == Outcome::reached_end; ++i) {
         state = scene.initial();
@@ -60,9 +69,9 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
     }
     spent += sample;
     times.push_back(sample / batch);
+    point.time = median(times);
+    point.time_min = std::ranges::min(times);
   }
-  point.time = median(times);
-  point.time_min = std::ranges::min(times);
   point.timed_runs = static_cast<int>(times.size());
   if (effort.watch) {
     point.path = effort.watch->see(method, options, point.counts.steps,

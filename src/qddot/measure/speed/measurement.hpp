@@ -16,8 +16,8 @@ struct Point {
   double t_reached = 0;  // [s]
   Errors errors{};
   PathErrors path{};
-  double time = 0, time_min = 0;  // median and least wall time of a run [s], set-up left out
-  double setup = 0;               // wall time of allocation and symbolic analysis [s]
+  double time = 0, time_min = 0;  // median and least time of a run [s], set-up left out
+  double setup = 0;               // time of allocation and symbolic analysis [s]
   int timed_runs = 0;
   Counts counts{};
   double energy_growth = 1;  // as in Summary
@@ -40,9 +40,16 @@ struct Effort {
 Options options_for(const Method& method, double value, const ReducedScene& scene,
                     Options options = {});
 
+// Whether the times of the point's runs vary: the median is more than a quarter above the least, as
+// where other programs run beside it.
+inline bool is_disturbed(const Point& point) {
+  return point.time_min > 0 && point.time > 1.25 * point.time_min;
+}
+
 // Returns the point as Effort::recall has it, or measures it: runs the method once untimed, and
-// then up to `repeats` times. A first run of 0.1 s or more counts as timed. A repeat that fails
-// makes the point a failure. Runs too short for the clock are timed in batches. Single thread.
+// then up to `repeats` times, or up to three times as often if it is disturbed. A first run of 0.1
+// s or more counts as timed. A repeat that fails makes the point a failure. Runs too short for the
+// clock are timed in batches. Single thread. Times are those of the clock in use.
 Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
                     const Reference& reference, const Effort& effort);
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/speed/front_again.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
 
 namespace qddot::inline measure {
@@ -46,6 +47,14 @@ WorkPrecision work_precision(const ReducedScene& model, Reference reference,
         measure_ladder(*method, model, all.reference.end.t, all.reference, effort, see);
     all.points.insert(all.points.end(), points.begin(), points.end());
   }
+  Effort timed_only = effort;
+  timed_only.watch = nullptr;
+  const auto again = [&](const Point& point) {
+    return measure_point(*point.method, point.value, model, all.reference.end.t, all.reference,
+                         timed_only);
+  };
+  take_smaller_times(all.points,
+                     time_front_again(all.points, all.reference, usual_accuracies(), again));
   return all;
 }
 

@@ -22,9 +22,9 @@ struct WorkPrecision {
 
 // Measures the methods on the model up to the time `until` [s], against a reference that takes
 // about `reference_seconds`. Without `methods` it measures all that can run the model. `report` is
-// called with each point. Throws NoReference if no reference can be made. Throws
-// std::invalid_argument for a model with massless unknowns or without unknowns, and for a method
-// that cannot run it.
+// called with each point. The points that decide are timed again at the end (time_front_again).
+// Throws NoReference if no reference can be made. Throws std::invalid_argument for a model with
+// massless unknowns or without unknowns, and for a method that cannot run it.
 WorkPrecision work_precision(const ReducedScene& model, double until,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              double reference_seconds = 10,
