@@ -65,8 +65,9 @@ void print_advice(const Advices& all, const SceneChoice& scene, double until) {
                beside(advice.sundials, advice));
   }
   fmt::print(
-      "error: a bound; N x: N times as long; all runs were made, times are of one run, without "
-      "set-up\n\n");
+      "error: a bound. time: of one run, without set-up; all of these runs were made. next, best: "
+      "the\nnext fastest method, and the fastest of its kind; 2 x takes twice the time of the one "
+      "to take.\n\n");
   std::string last;
   for (const Advice& advice : all.for_each) {
     if (!advice.take) continue;

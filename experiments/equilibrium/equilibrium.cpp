@@ -9,7 +9,29 @@
 #include "experiments/kit/node_table.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/provenance.hpp"
+#include "qddot/measure/motion/momenta.hpp"
 #include "qddot/scene/settle.hpp"
+
+namespace {
+
+// Whether the minimum is an isolated one; if not, why.
+std::string isolation_in_words(const qddot::Equilibrium& rest, const qddot::Scene& scene) {
+  if (rest.isolated) return "an isolated minimum";
+  // Each conserved momentum belongs to a motion of the whole that changes no spring.
+  const qddot::Momenta momenta(scene);
+  const auto of_the_whole =
+      momenta.linear(scene.nodes, 0).size() + momenta.angular(scene.nodes).size();
+  const std::string flat = fmt::format("zero within rounding in {} direction{}",
+                                       rest.flat_directions, rest.flat_directions == 1 ? "" : "s");
+  if (rest.flat_directions <= of_the_whole) {
+    return flat + ", in which the scene moves and turns as a whole: pins leave it free to";
+  }
+  return flat +
+         (of_the_whole > 0 ? fmt::format(", {} of them motions of the whole", of_the_whole) : "") +
+         ": something is loose, or too soft to tell, and the minimum is not known to be isolated";
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace qddot;
@@ -52,12 +74,7 @@ int main(int argc, char** argv) {
                drawn.name, rest.iterations, rest.residual,
                reduced.potential({0, rest.q, Vec::Zero(rest.q.size())}));
     fmt::print("smallest eigenvalue of -K: {:.6g} N/m, {}\n", rest.smallest_eigenvalue,
-               rest.isolated
-                   ? std::string("an isolated minimum")
-                   : fmt::format("zero within rounding in {} direction{}: something is "
-                                 "loose, or too soft to tell, and the minimum is not known "
-                                 "to be isolated",
-                                 rest.flat_directions, rest.flat_directions == 1 ? "" : "s"));
+               isolation_in_words(rest, drawn));
     return done;
   });
 }

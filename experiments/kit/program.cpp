@@ -15,6 +15,8 @@
 #include "experiments/kit/interruptible.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/provenance.hpp"
+#include "qddot/integrators/nearest_name.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -37,6 +39,17 @@ void in_one_sentence(const Parse& parse) {
   } catch (const CLI::ParseError& error) {
     throw InvalidInput(error.what());
   }
+}
+
+// The option that was meant by an unknown one: another program's word for the step size, or a
+// misspelt name. Empty if there is none.
+std::string meant_option(const std::string& given, const CLI::App& app) {
+  constexpr std::array step_size = {"--h", "--dt", "-dt", "--timestep", "--time-step"};
+  Words names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  const bool is_step = std::ranges::find(step_size, given) != step_size.end();
+  if (is_step && std::ranges::find(names, "--step-size") != names.end()) return "--step-size";
+  return nearest_name(given, names);
 }
 
 template <class... Kinds>
@@ -156,6 +169,15 @@ Argument<Effort> Program::effort(const Effort& usual) {
        "seconds that one run of a point may take; slower ones become over_budget", true)
       .last()
       .positive("the seconds a run may take");
+  word("--clock", "wall",
+       "the clock of times: wall, or processor, which stands still while other programs run")
+      .check([](const std::string& clock, const std::string& option) {
+        if (clock != "wall" && clock != "processor") {
+          throw InvalidInput(
+              fmt::format("{} {} is not allowed; it is wall or processor", option, clock));
+        }
+        clock_in_use = clock == "wall" ? std::chrono::steady_clock::now : processor_time;
+      });
   return {*this, "--repeats", effort};
 }
 
@@ -248,7 +270,18 @@ int Program::run(int argc, char** argv, const std::function<int()>& work) {
 }
 
 void Program::parse(int argc, const char* const* argv) {
-  in_one_sentence([&] { app_->parse(argc, argv); });
+  try {
+    in_one_sentence([&] { app_->parse(argc, argv); });
+  } catch (const InvalidInput&) {
+    const Words unknown = app_->remaining();
+    const auto first = std::ranges::find_if(
+        unknown, [](const std::string& word) { return word.starts_with("-"); });
+    if (first == unknown.end()) throw;
+    const std::string option = first->substr(0, first->find('='));
+    const std::string meant = meant_option(option, *app_);
+    throw InvalidInput(fmt::format("{} is not an option of {}{}; --help lists them all", option,
+                                   name_, meant.empty() ? "" : ", the nearest is " + meant));
+  }
   for (const auto& check : checks_) check();
 }
 

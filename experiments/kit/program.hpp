@@ -173,8 +173,8 @@ class Program {
   Argument<std::vector<double>> repeated_number(Text name, Text text);
   Argument<bool> flag(Text name, Text text) { return declare(name, false, text, false); }
 
-  // Options that several programs share: --scene and --no-reduce; --until; --methods; --repeats and
-  // --point-limit; those of the methods (see allowed_options.hpp).
+  // Options that several programs share: --scene and --no-reduce; --until; --methods; --repeats,
+  // --point-limit and --clock; those of the methods (see allowed_options.hpp).
   Argument<SceneChoice> scene();
   Argument<SceneChoice> drawn_scene();  // --scene alone
   Argument<double> until(Text text = "the time to run to in s (default: the scene's own)") {

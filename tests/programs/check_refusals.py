@@ -332,6 +332,20 @@ class Refusals(Programs):
         for words in "--scene 'two\nlines' --method verlet", "--scene orbit --method 'two\nlines'":
             self.refused(f"simulate {words} {step}", "two", "lines", "allowed")
 
+    def test_an_unknown_option_gets_the_nearest(self):
+        for given, nearest in (
+            ("--dt 0.1", "--step-size"), ("--h=0.1", "--step-size"), ("--time-step 1", "--step-size"),
+            ("--stepsize 0.1", "--step-size"), ("--utnil 1", "--until"),
+        ):  # fmt: skip
+            option = re.split("[ =]", given)[0]
+            said = f"{option} is not an option of simulate, the nearest is {nearest}"
+            self.refused(f"simulate --scene orbit --method verlet {given}", said)
+        ended = run("energy_drift --scene orbit --leapfrog 1 --out out")
+        self.complains(ended, 2, "--leapfrog is not an option of energy_drift; --help")
+        # A program without that option has no word for it.
+        ended = run("equilibrium --scene orbit --dt 1")
+        self.complains(ended, 2, "--dt is not an option of equilibrium; --help")
+
     def test_kernels_that_are_not_there(self):
         line = "simulate --scene cloth --method verlet --step-size 1e-4"
         for variable in ("QDDOT_ROOTS", "QDDOT_KERNELS"):

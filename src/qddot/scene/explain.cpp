@@ -67,9 +67,10 @@ std::string stability_sentence(const Explanation& e, const Scene& scene) {
   }
   if (e.unstable == 0) {
     return fmt::format(
-        "K is negative semidefinite within rounding at the start: no direction grows, but in {} it "
-        "is zero or its sign cannot be told{}",
-        e.flat, flat_growth(e));
+        "K is negative semidefinite at the start: no direction grows; in {} direction{} nothing "
+        "resists at first, or too little to tell{}: a spring at its rest length resists along "
+        "itself alone",
+        e.flat, e.flat == 1 ? "" : "s", flat_growth(e));
   }
   std::string sentence =
       fmt::format("K is indefinite at the start, in {} direction{} (springs are compressed)",
@@ -80,8 +81,8 @@ std::string stability_sentence(const Explanation& e, const Scene& scene) {
                             e.fastest, fmt::join(x.data(), x.data() + scene.dimension, ", "));
   }
   if (e.flat > 0) {
-    sentence +=
-        fmt::format("; in {} more it is zero or its sign cannot be told{}", e.flat, flat_growth(e));
+    sentence += fmt::format("; in {} more nothing resists at first, or too little to tell{}",
+                            e.flat, flat_growth(e));
   }
   return sentence;
 }

@@ -19,7 +19,19 @@ double diagonal(const std::vector<Node>& nodes) {
 
 Equilibrium equilibrium_of(const ReducedScene& scene) {
   const State& start = scene.initial();
-  return find_equilibrium(scene.system(), start.q, diagonal(scene.expand(start)));
+  const std::vector<Node> drawn = scene.expand(start);
+  Equilibrium rest = find_equilibrium(scene.system(), start.q, diagonal(drawn));
+  if (rest.outcome == Equilibrium::Outcome::reached) return rest;
+  const std::vector<Node> nodes = scene.expand({0, rest.q, start.v});
+  const auto moved = [&](std::size_t i) { return (nodes[i].position - drawn[i].position).norm(); };
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (moved(i) > moved(farthest)) farthest = i;
+  }
+  if (!nodes.empty()) {
+    rest.message += fmt::format(" (node {} moved by {:.3g} m)", farthest, moved(farthest));
+  }
+  return rest;
 }
 
 Scene settled(const Scene& scene, const std::string& source) {
@@ -27,15 +39,7 @@ Scene settled(const Scene& scene, const std::string& source) {
   const Equilibrium rest = equilibrium_of(reduced);
   const std::vector<Node> nodes = reduced.expand({0, rest.q, reduced.initial().v});
   if (rest.outcome != Equilibrium::Outcome::reached) {
-    const auto moved = [&](std::size_t i) {
-      return (nodes[i].position - scene.nodes[i].position).norm();
-    };
-    std::size_t farthest = 0;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (moved(i) > moved(farthest)) farthest = i;
-    }
-    throw InvalidInput(fmt::format("{}: {} (node {} moved by {:.3g} m)", source, rest.message,
-                                   farthest, moved(farthest)));
+    throw InvalidInput(fmt::format("{}: {}", source, rest.message));
   }
   Scene result = scene;
   result.starts_at_equilibrium = false;

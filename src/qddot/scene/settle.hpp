@@ -9,13 +9,14 @@
 namespace qddot {
 
 // The stable equilibrium that is reached downhill from the scene's initial positions. The size of
-// the scene is the diagonal of the box around its nodes. No more than Reductions::all_directions()
+// the scene is the diagonal of the box around its nodes. A failure's sentence names the node that
+// moved farthest, which belongs to the part that falls. No more than Reductions::all_directions()
 // may have reduced the scene: rest may lie where a reduced motion never comes.
 Equilibrium equilibrium_of(const ReducedScene& scene);
 
 // The scene with its nodes at that equilibrium and its velocities as drawn; it no longer asks to
 // start there. Throws InvalidInput if there is no equilibrium or none is reached. The sentence
-// starts with `source` and names the node that moved farthest.
+// starts with `source`.
 Scene settled(const Scene& scene, const std::string& source);
 
 }  // namespace qddot
