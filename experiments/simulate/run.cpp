@@ -18,6 +18,7 @@
 #include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
+#include "qddot/measure/stability/energy_loss.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::simulate {
@@ -25,6 +26,8 @@ namespace {
 
 // The time [s] for explaining why a run failed: some twenty times the run's, between these limits.
 constexpr double shortest_patience = 1, longest_patience = 5;
+// The least time [s] for explaining what energy a run lost; it is three times the run's.
+constexpr double shortest_look = 0.5;
 
 // The time [s] that an interruption waits for the present step.
 constexpr double patience_with_a_step = 60;
@@ -122,6 +125,7 @@ int answer(const Arguments& a) {
     origin["outcome"] = name(answer.summary.outcome);
     origin["t_reached"] = end.t;
     origin["energy_growth"] = answer.summary.energy_growth;
+    origin["energy_loss"] = answer.summary.energy_loss;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     origin.update(about(answer, a));
     output.finish(end, origin);
@@ -176,6 +180,7 @@ int run_method(const Arguments& a) {
     origin["outcome"] = name(summary.outcome);
     origin["t_reached"] = summary.t_reached;
     origin["energy_growth"] = summary.energy_growth;
+    origin["energy_loss"] = summary.energy_loss;
     origin["seconds"] = seconds;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     output.finish(run.state(), origin);
@@ -191,6 +196,8 @@ int run_method(const Arguments& a) {
   if (summary.outcome != Outcome::diverged) warn(growth_warning(method, summary));
   if (summary.outcome == Outcome::reached_end) {
     warn(step_warning(method, options, scene));
+    warn(loss_warning(method, options, scene, summary, until,
+                      std::clamp(3 * seconds, shortest_look, longest_patience)));
     return done;
   }
   const double patience = std::clamp(20 * seconds, shortest_patience, longest_patience);

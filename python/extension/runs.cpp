@@ -5,6 +5,7 @@
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
+#include "qddot/measure/stability/energy_loss.hpp"
 
 namespace qddot::python {
 namespace {
@@ -124,9 +125,14 @@ std::string why_it_failed(const Model& model, const std::string& name, const py:
   outside(1, [&](const std::stop_token& stop) {
     Simulation simulation(model.reduced, chosen, options);
     const Summary summary = simulation.advance(until, {}, stop);
-    words = summary.outcome == Outcome::reached_end
-                ? step_warning(chosen, options, *model.reduced)
-                : diagnosis(chosen, options, *model.reduced, until, summary, seconds);
+    if (summary.outcome != Outcome::reached_end) {
+      words = diagnosis(chosen, options, *model.reduced, until, summary, seconds);
+      return;
+    }
+    words = step_warning(chosen, options, *model.reduced);
+    if (words.empty()) {
+      words = loss_warning(chosen, options, *model.reduced, summary, until, seconds);
+    }
   });
   return in_python(words);
 }
@@ -154,7 +160,7 @@ py::dict record_of(const Counts& c) {
 py::dict record_of(const Summary& s) {
   return py::dict(arg("outcome") = std::string(name(s.outcome)), arg("t_reached") = s.t_reached,
                   arg("message") = in_python(s.message), arg("energy_growth") = s.energy_growth,
-                  arg("counts") = record_of(s.counts));
+                  arg("energy_loss") = s.energy_loss, arg("counts") = record_of(s.counts));
 }
 
 void add_runs(py::module_& module) {

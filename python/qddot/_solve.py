@@ -72,7 +72,9 @@ class Solution:
 
     q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
     buffer. energy is None for a System without a potential. outcome is "reached_end" or the kind of
-    failure; message says it in a sentence. seconds is the wall time of the run. If an accuracy was
+    failure; message says it in a sentence. seconds is the wall time of the run. energy_growth and
+    energy_loss are 1 and 0 for an exact motion: one plus what it gained on the way, and what it
+    had lost at the end, over the energy that the motion can turn into speed. If an accuracy was
     asked for: error_estimate bounds the relative error, error_estimate_kind says how the bound was
     made ("compared", "refined", "conserved", "rounding", "none"), is_reached says whether it is at
     most the accuracy, and the motion is unknown from the time horizon [s] on.
@@ -92,6 +94,7 @@ class Solution:
     counts: Counts
     seconds: float
     energy_growth: float
+    energy_loss: float
     accuracy: float | None = None
     is_reached: bool | None = None
     error_estimate: float | None = None
@@ -114,7 +117,8 @@ class Solution:
 
     def diagnosis(self, seconds: float = 5) -> str:
         """Why the run failed, and steps or methods that do not fail, found by trying for some
-        seconds. If it did not fail, what is wrong with its steps, if anything. Empty if there is
+        seconds. If it did not fail, what is wrong with its steps, if anything, or why it lost more
+        than a twentieth of its energy. Empty if there is
         nothing to say, and for a System without V or K."""
         return self._diagnose(seconds) if self._diagnose else ""
 
@@ -332,6 +336,7 @@ def _solution(
         t_reached=summary["t_reached"],
         counts=Counts(**summary["counts"]),
         energy_growth=summary["energy_growth"],
+        energy_loss=summary["energy_loss"],
         **about,
     )
 

@@ -1,3 +1,5 @@
+#include <random>
+
 #include <boost/test/unit_test.hpp>
 
 #include "tests/integrators/runs.hpp"
@@ -14,6 +16,28 @@ Problem falling() {
   for (int i = 0; i < 3; ++i) p.network.links.push_back({i, i + 1, {500, 0.5}});
   p.network.anchors = {{0, {0, 0, 0}, {500, 0.5}}};
   p.initial = {0, Vec{{0.5, 0, 1, 0, 1.5, 0, 2, 0}}, Vec::Zero(8)};
+  return p;
+}
+
+// Twelve masses that fly about at random, most of whose springs are compressed.
+Problem crumpled(std::mt19937& random) {
+  const auto drawn = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  constexpr int nodes = 12;
+  Problem p{{.dimension = 3, .gravity = {0, 0, -9.81}, .node_mass = Vec::Constant(nodes, 0.1)}, {}};
+  p.initial = {0, Vec(3 * nodes), Vec(3 * nodes)};
+  for (double& x : p.initial.q) x = drawn(0, 1);
+  for (double& v : p.initial.v) v = drawn(-2, 2);
+  const double stiffness = std::pow(10, drawn(2, 4));
+  for (int i = 0; i < nodes; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (drawn(0, 1) > 0.4) continue;
+      const double length = (p.initial.q.segment<3>(3 * i) - p.initial.q.segment<3>(3 * j)).norm();
+      p.network.links.push_back({j, i, {stiffness, length * drawn(0.9, 1.5)}});
+    }
+  }
+  p.network.anchors = {{0, {0, 0, 0}, {stiffness, 0.5}}};
   return p;
 }
 
@@ -145,6 +169,58 @@ BOOST_AUTO_TEST_CASE(methods_with_soft_springs_above_their_limit_say_so_with_rea
       BOOST_TEST(coarse.summary.energy_growth > 1e3);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_linearly_implicit_step_that_goes_anywhere_and_comes_back_is_seen) {
+  // Crumpled nets: where compressed springs make M - h^2 K nearly singular, one step throws nodes
+  // far away, and the next ones damp that again. Each energy is computed, so none is missed.
+  const Method& method = method_named("semi_implicit_euler");
+  std::mt19937 random(7);
+  int came_back = 0;
+  for (int net = 0; net < 60; ++net) {
+    const Problem p = crumpled(random);
+    const Options options{.step_size =
+                              std::pow(10, std::uniform_real_distribution(-2.5, -1.)(random))};
+    const auto system = make_mass_spring(p.network);
+    const double start = total_energy(*system, p.initial);
+    double most = start, last = start, lowest = system->potential(p.initial.q);
+    Observer each{{}, [&](const State& s) {
+                    last = total_energy(*system, s);
+                    most = std::max(most, last);
+                    lowest = std::min(lowest, system->potential(s.q));
+                  }};
+    for (int i = 1; i <= 40; ++i) each.times.push_back(i * options.step_size);
+    const Run r = run(method, *system, p.initial, each.times.back(), options, each);
+    if (r.summary.outcome != Outcome::reached_end) continue;
+    const double grown = 1 + (most - start) / (start - lowest);
+    came_back += grown > 2 && last < start;
+    // The lowest energy ahead counts, too, if all of it grew.
+    BOOST_TEST(r.summary.energy_growth >= 1 + (grown - 1) / 2, "net " << net << ": " << grown);
+    BOOST_TEST(r.summary.energy_growth < grown * (1 + 1e-9));
+  }
+  BOOST_TEST(came_back >= 5);
+}
+
+BOOST_AUTO_TEST_CASE(a_loss_is_what_the_last_energy_says) {
+  // (1 + (h w)^2)^-1 a step.
+  const Run damped = run(method_named("implicit_euler"), pushed(10), 1, {.step_size = 0.01});
+  BOOST_TEST(damped.summary.energy_loss == 1 - std::pow(1.01, -100),
+             boost::test_tools::tolerance(1e-9));
+  BOOST_TEST(damped.summary.energy_lost == damped.summary.energy_loss / 2,
+             boost::test_tools::tolerance(1e-9));
+  // What falls turns its energy into speed and loses none.
+  for (const Method& method : general_methods()) {
+    if (method.name == "explicit_euler" || method.order == 1) continue;
+    BOOST_TEST(
+        run(method, falling(), 0.3, options_of(method, 0.001, 1e-6)).summary.energy_loss < 0.01,
+        method.name);
+  }
+  // Of parts, what each lost is compared with what all have: here 1/2 J and 1/2 J.
+  const auto both = in_parts(pushed(1e-3).network, pushed(10).network);
+  const Run r = run(method_named("implicit_euler"), both, {0, Vec{{0, 0}}, Vec{{1, 1}}}, 1,
+                    {.step_size = 0.01});
+  BOOST_TEST(r.summary.energy_loss == damped.summary.energy_loss / 2,
+             boost::test_tools::tolerance(1e-6));
 }
 
 BOOST_AUTO_TEST_CASE(of_several_parts_the_worst_counts) {

@@ -9,9 +9,11 @@ namespace qddot {
 namespace {
 
 // See the class.
-constexpr double part_a_gap = 0.5, longest_gap = 256, work_an_energy = 500;
+constexpr double part_a_gap = 0.5, longest_gap = 256, work_an_energy = 500, dear_step = 20;
 // A state is kept, at the cost of a copy, if what is large there has grown by this factor.
 constexpr double grown = 1.2;
+// Rounding cannot have made a smaller part of D, if the motion is any.
+constexpr double large_loss = 1e-3;
 constexpr double largest = 1e300;
 // Beyond |v| = 1e20 m/s a run is about to fail, and its last states had better be left alone.
 constexpr double hopeless_squared = 1e40;
@@ -69,13 +71,14 @@ double EnergyGrowth::drawn() {
 }
 
 void EnergyGrowth::look(const State& state, double work) {
+  const bool is_dear = work >= dear_step * steps_;
   const double gap = std::min({part_a_gap * steps_, longest_gap, work_an_energy * steps_ / work});
-  until_look_ = std::max(1, static_cast<int>(std::lround(drawn() * gap)));
+  until_look_ = is_dear ? 1 : std::max(1, static_cast<int>(std::lround(drawn() * gap)));
   steps_ += until_look_;
   if (!system_.has_potential()) return;
   propose(fastest_, system_.kinetic(state.v), state);
   propose(farthest_, (state.q - q_).squaredNorm(), state);
-  if (work < next_energy_) return;
+  if (!is_dear && work < next_energy_) return;
   see(state.q, state.v);
   next_energy_ = work + drawn() * work_an_energy;
 }
@@ -87,10 +90,11 @@ void EnergyGrowth::propose(Candidate& candidate, double size, const State& state
   candidate.v = state.v;
 }
 
-void EnergyGrowth::see(const Vec& q, const Vec& v) {
+double EnergyGrowth::see(const Vec& q, const Vec& v) {
   const double potential = system_.potential(q), energy = system_.kinetic(v) + potential;
   most_ = std::max(most_, std::isfinite(energy) ? energy : largest);
   lowest_ = std::min(lowest_, potential);
+  return energy;
 }
 
 // The change of V by one rounding of the positions at the start.
@@ -108,21 +112,27 @@ double EnergyGrowth::rounding() {
   return 4 * most;
 }
 
-double EnergyGrowth::factor(const State& state) {
-  if (!system_.has_potential()) return 1;
+EnergyChange EnergyGrowth::change(const State& state) {
+  if (!system_.has_potential()) return {};
   see(fastest_.q, fastest_.v);
   see(farthest_.q, farthest_.v);
-  see(state.q, state.v);
-  const double gained = most_ - start_;
-  double own = start_ - lowest_;
-  if (gained <= own) return own > 0 ? 1 + gained / own : 1;
+  const double lost = start_ - see(state.q, state.v), gained = most_ - start_;
+  EnergyChange change{.lost = std::max(0.0, lost), .own = start_ - lowest_};
+  const bool is_own = gained <= change.own;
+  if (is_own && change.own > 0) change.growth += gained / change.own;
+  if (is_own && !(lost > large_loss * change.own)) return change;
   // A run that grew from its first step on has no other energy of its own.
-  own = std::max(own, start_ - lowest_ahead(system_, q_, fastest_.q, fastest_.v));
-  const double unsure = rounding();
-  if (gained <= unsure + 4 * machine_epsilon * std::abs(most_)) return 1;
-  const double growth = 1 + gained / std::max(own, unsure);
+  if (!is_own) {
+    const double ahead = lowest_ahead(system_, q_, fastest_.q, fastest_.v);
+    change.own = std::max(change.own, start_ - ahead);
+  }
+  const double unsure = rounding(), many = unsure + 4 * machine_epsilon * std::abs(most_);
+  if (lost <= many) change.lost = 0;
+  if (is_own || gained <= many) return change;
+  const double growth = 1 + gained / std::max(change.own, unsure);
   // An energy that overflows at the start gives no growth.
-  return std::isnan(growth) ? 1 : std::min(growth, largest);
+  if (!std::isnan(growth)) change.growth = std::min(growth, largest);
+  return change;
 }
 
 }  // namespace qddot

@@ -6,10 +6,19 @@
 
 namespace qddot {
 
-// One plus the energy that a run gains, relative to the energy that its motion can turn into speed:
-//   1 + (E_max - E(0)) / D,   D = the largest E(0) - V(q) seen.
-// It is 1 for an exact motion, also for one that begins at rest and falls. It is 1 for a system
-// without V. It is a lower bound, since not every E is computed:
+// The energy that a run gained on its way and lost by its end, beside the energy that its motion
+// can turn into speed, D = the largest E(0) - V(q) seen. An exact motion has the first values of
+// all, also if it begins at rest and falls; so has a system without V.
+struct EnergyChange {
+  double growth = 1;  // 1 + (E_max - E(0)) / D, a lower bound
+  double lost = 0;    // E(0) - E at the end [J], unless rounding may have made it
+  double own = 0;     // D [J]
+
+  // The lost part of D.
+  double loss() const { return lost > 0 && own > 0 ? lost / own : 0; }
+};
+
+// Watches a run for its EnergyChange. Not every E is computed:
 //
 //   - A look takes the kinetic energy and the distance from the start, some 0.2 of a step of the
 //     cheapest method. The E of the states where they were largest are computed at the end. Looks
@@ -18,6 +27,9 @@ namespace qddot {
 //   - Methods of fixed steps know each step's speed. Looks are also where its square has doubled.
 //   - E itself costs about a force. It is computed each time that the run has done the work of some
 //     500, also at random: 0.2 % of the run.
+//   - A step with the work of 20 forces and more has factorised K. A linearly implicit one can then
+//     go anywhere and come back in a few steps, so the E of each is computed: 5 % of the run's work
+//     at most.
 class EnergyGrowth {
  public:
   // Borrows the system, which must outlive it.
@@ -35,8 +47,8 @@ class EnergyGrowth {
   bool is_due() { return --until_look_ == 0; }
   // `work`: of the run so far, in forces.
   void look(const State& state, double work);
-  // The growth in the run so far, which is at `state`; at least 1, at most 1e300.
-  double factor(const State& state);
+  // The change in the run so far, which is at `state`. Its growth is at least 1, at most 1e300.
+  EnergyChange change(const State& state);
 
  private:
   struct Candidate {  // a state whose E is not yet computed, and what is large there
@@ -45,7 +57,7 @@ class EnergyGrowth {
   };
   void look_sooner(double squared_speed);
   void propose(Candidate& candidate, double size, const State& state);
-  void see(const Vec& q, const Vec& v);
+  double see(const Vec& q, const Vec& v);  // returns E
   double rounding();
   double drawn();
 

@@ -158,7 +158,7 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
   shows_steps_ = static_cast<bool>(shown_steps_);
   has_begun_ = false;
   Outcome outcome = Outcome::reached_end;
-  double growth = 1;
+  EnergyChange energy;
   check_arguments(system_, state, t_end, observer);
   try {
     outcome = run(state, t_end, observer);
@@ -171,10 +171,13 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
     outcome = Outcome::solver_failed;
     set_message(error.what());
   }
-  if (has_begun_) growth = energy_growth(state);
-  if (outcome == Outcome::reached_end) return {outcome, state.t, counts_, seconds_, {}, growth};
-  if (failed_step_ == 0) failed_step_ = counts_.steps + 1;
-  return {outcome, state.t, counts_, seconds_, words_on(outcome), growth, failed_step_};
+  if (has_begun_) energy = energy_change(state);
+  Summary summary{outcome,       state.t, counts_,     seconds_,     {},
+                  energy.growth, 0,       energy.lost, energy.loss()};
+  if (outcome == Outcome::reached_end) return summary;
+  summary.message = words_on(outcome);
+  summary.failed_step = failed_step_ > 0 ? failed_step_ : counts_.steps + 1;
+  return summary;
 }
 
 double Integrator::work() const {

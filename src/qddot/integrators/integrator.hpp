@@ -98,10 +98,13 @@ struct Summary {
   Counts counts;
   Seconds seconds;
   std::string message = "advance was not called";  // one sentence; empty if the end was reached
-  // The energy growth of the run (see EnergyGrowth); of several parts the largest.
+  // The energy growth of the run (see EnergyChange); of several parts the largest.
   double energy_growth = 1;
   // The number of the failed step, 1, 2, ..., in the part that failed; 0 if the end was reached.
   std::int64_t failed_step = 0;
+  // The energy [J] that was lost by the end of the run, and that part of the energy which its motion
+  // can turn into speed (EnergyChange); zero if none was lost.
+  double energy_lost = 0, energy_loss = 0;
 };
 
 // Observes a run: `see` is called at each of `times` [s] (ascending, after the start, at most
@@ -229,8 +232,8 @@ class Integrator {
   Outcome run(State& state, double t_end, const Observer& observer);
   // The work of the run so far, in forces.
   double work() const;
-  // The energy growth in the run up to `state`.
-  virtual double energy_growth(const State& state) { return growth_.factor(state); }
+  // The change of the energy in the run up to `state`.
+  virtual EnergyChange energy_change(const State& state) { return growth_.change(state); }
 
   const Method& method_;
   const System& system_;

@@ -61,7 +61,7 @@ Outcome Parts::run_part(Part& part, double t_end) {
   Outcome outcome = Outcome::solver_failed;
   try {
     if (part.state.t != part.begin.t) {
-      part.growth = growth_of(part);
+      part.growth = std::max(part.growth, part.integrator->energy_change(part.state).growth);
       part.state = part.begin;
       start(part);
     }
@@ -82,14 +82,15 @@ double Parts::reached() const {
   return parts_.empty() ? 0 : sum / static_cast<double>(parts_.size());
 }
 
-double Parts::growth_of(Part& part) {
-  return std::max(part.growth, part.integrator->energy_growth(part.state));
-}
-
-double Parts::energy_growth(const State&) {
-  double most = 1;
-  for (Part& part : parts_) most = std::max(most, growth_of(part));
-  return most;
+EnergyChange Parts::energy_change(const State&) {
+  EnergyChange all;
+  for (Part& part : parts_) {
+    const EnergyChange own = part.integrator->energy_change(part.state);
+    all.growth = std::max({all.growth, part.growth, own.growth});
+    all.lost += own.lost;
+    all.own += own.own;
+  }
+  return all;
 }
 
 void Parts::gather(State& state) {

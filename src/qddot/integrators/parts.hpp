@@ -36,8 +36,7 @@ class Parts final : public Integrator {
   // Brings the part to t_end from its start, even if it has run from there before.
   Outcome run_part(Part& part, double t_end);
   void gather(State& state);
-  double growth_of(Part& part);
-  double energy_growth(const State& state) override;
+  EnergyChange energy_change(const State& state) override;
 
   std::vector<Part> parts_;
 };

@@ -7,6 +7,7 @@
 #include "qddot/analysis/natural_modes.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
+#include "qddot/measure/motion/kinetic_frequency.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/settle.hpp"
@@ -26,8 +27,6 @@ class Look {
       : scene_(scene), momenta_(momenta), scales_(scales) {}
 
   void at(const State& state) {
-    const Vec& mass = scene_.system().mass();
-    scene_.system().force(state.q, f_);
     // Only the integrated motion counts: a fall in closed form has no error.
     const bool is_integrated = scene_.system().size() > 0;
     const double kinetic = is_integrated ? scene_.system().kinetic(state.v) : scene_.kinetic(state);
@@ -35,10 +34,7 @@ class Look {
     if (!std::isfinite(kinetic + potential)) return;
     scales_.kinetic = std::max(scales_.kinetic, kinetic);
     size_ = std::max(size_, kinetic + std::abs(potential));
-    for (Index i = 0; i < f_.size(); ++i) {
-      if (mass[i] > 0) accelerations_ += f_[i] * f_[i] / mass[i];
-    }
-    velocities_ += 2 * scene_.system().kinetic(state.v);
+    frequency_.see(state);
     if (!momenta_.any_kept()) return;
     const auto nodes = scene_.expand(state);
     scales_.linear = std::max(scales_.linear, momenta_.linear_size(nodes));
@@ -46,7 +42,7 @@ class Look {
   }
 
   void finish() {
-    if (velocities_ > 0) scales_.frequency = std::sqrt(accelerations_ / velocities_);
+    scales_.frequency = frequency_.value();
     const double energy = std::abs(scales_.energy);
     if (scales_.kinetic == 0) scales_.kinetic = energy > 0 ? energy : 1;
     if (scales_.linear == 0) scales_.linear = 1;
@@ -58,8 +54,8 @@ class Look {
   const ReducedScene& scene_;
   const Momenta& momenta_;
   MotionScales& scales_;
-  Vec f_{scene_.system().size()};
-  double size_ = 0, accelerations_ = 0, velocities_ = 0;
+  KineticFrequency frequency_{scene_.system()};
+  double size_ = 0;
 };
 
 }  // namespace
