@@ -36,7 +36,7 @@ from qddot._analysis import (
 )
 from qddot._methods import Method, method, methods
 from qddot._qddot import InvalidInput, NoReference, __version__
-from qddot._reference import Errors, Reference, reference
+from qddot._reference import Errors, ErrorsAlong, Reference, reference
 from qddot._scene import Explanation, Scene
 from qddot._solve import Counts, Energy, RunFailed, Solution, State, solve
 from qddot._studies import (
@@ -61,6 +61,7 @@ __all__ = [
     "EnergyTrend",
     "Equilibrium",
     "Errors",
+    "ErrorsAlong",
     "Exchange",
     "ExchangeRun",
     "Explanation",

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from qddot import _qddot
 from qddot._arrays import Floats, count as whole_number, number
 from qddot._methods import method as method_named, options_for
+from qddot._names import knows_its_arguments
 from qddot._scene import Scene
 from qddot._starts import model_of
 from qddot._system import System
@@ -94,6 +95,7 @@ class StabilityLimit:
     step_size: float | None = None
 
 
+@knows_its_arguments
 def equilibrium(
     of: Scene | System, q0: ArrayLike | None = None, *, length: float = 1.0
 ) -> Equilibrium:
@@ -114,6 +116,7 @@ def equilibrium(
     return Equilibrium(**record)
 
 
+@knows_its_arguments
 def modes(
     of: Scene | System,
     count: int = 10,
@@ -139,10 +142,11 @@ def modes(
 def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
     """The effect of a step of the method on a vibration at h w; options are those of solve()."""
     chosen = method_named(method)
-    given = options_for(chosen, {**options, chosen.knob: 1.0})
+    given = options_for(chosen, {**options, chosen.knob: 1.0}, ("h_omega",))
     return LinearStep(**_qddot.linear_step(method, number(h_omega, "h_omega"), given))
 
 
+@knows_its_arguments
 def stability_limit(
     method: str, of: Scene | System | None = None, q0: ArrayLike | None = None
 ) -> StabilityLimit:
