@@ -52,12 +52,20 @@ def hint(name: str, names: Iterable[str]) -> str:
 
 def knows_its_arguments(function: F) -> F:
     """The same function, or __init__ of a class. It raises a TypeError with the nearest name for an
-    argument that it does not have."""
+    argument that it does not have, and for one without a name that needs it."""
     label = function.__qualname__.replace(".__init__", "")
-    names = [name for name in inspect.signature(function).parameters if name not in ("self", "cls")]
+    parameters = inspect.signature(function).parameters
+    names = [name for name in parameters if name not in ("self", "cls")]
+    most = sum(p.kind is p.POSITIONAL_OR_KEYWORD for p in parameters.values())
+    first_named = names[most - (len(parameters) - len(names)) :]
 
     @functools.wraps(function)
     def checked(*arguments: Any, **named: Any) -> Any:
+        if len(arguments) > most and first_named:
+            raise TypeError(
+                f"{label}: {arguments[most]!r} has no name; the arguments that need one are "
+                f"{', '.join(first_named)}"
+            )
         for name in named:
             if name not in names:
                 raise TypeError(

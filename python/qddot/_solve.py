@@ -69,7 +69,7 @@ class State:
 @dataclass(frozen=True, repr=False, eq=False)
 class Solution:
     """The motion that a method computed, at the times t of `save_at` that it reached (at its end
-    alone if none were asked for), and at its end.
+    alone if none were asked for), and at its end. Called with times, it gives q and v there.
 
     q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
     buffer. energy is None for a System without a potential. outcome is "reached_end" or the kind of

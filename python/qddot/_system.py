@@ -283,6 +283,8 @@ class System:
         if stiffness is not None and _is_matrix(stiffness):
             constant = self._constant(stiffness)
             self._stiffness, self._linear = lambda q: constant, True
+        elif stiffness is not None and not callable(stiffness):
+            raise ValueError("stiffness: it is neither a callable nor a matrix")
         elif stiffness is not None:
             require_arguments(stiffness, "stiffness", 1)
             self._stiffness = stiffness

@@ -41,6 +41,10 @@ class Names(unittest.TestCase):
                 sentence = rf"^{wrong} is no argument of .*, the nearest is {right};"
                 with self.assertRaisesRegex(TypeError, sentence):
                     call(**{wrong: 1e-3})
+        with self.assertRaisesRegex(TypeError, "^solve: 0.1 has no name; .* are until, step_size, "):
+            qddot.solve(CLOTH, "verlet", 0.1)
+        with self.assertRaisesRegex(AttributeError, "no generator of scenes, the nearest is cloth"):
+            qddot.scenes.clot
         with self.assertRaisesRegex(TypeError, "^colour is no argument of solve; there are of, "):
             qddot.solve(CLOTH, colour=1)
         trend = qddot.energy_trend
@@ -49,6 +53,7 @@ class Names(unittest.TestCase):
             (lambda: trend(CLOTH, "ida", rtol=1e-3, end=1), "end is not .* nearest is until"),
             (lambda: qddot.linear_step("bdf2", 1.0, solve_tol=3), "nearest is solve_tolerance"),
             (lambda: CLOTH.replace(velocity=0), "velocity is none of .* the nearest is velocities"),
+            (lambda: qddot.scenes.cloth(node=5), "a parameter of cloth, the nearest is nodes;"),
             (lambda: qddot.method("Verlet"), "the nearest is verlet"),
         ):
             with self.assertRaisesRegex(ValueError, sentence):

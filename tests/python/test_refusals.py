@@ -99,6 +99,7 @@ OF_RUNS = {
 }
 OF_SYSTEMS = {
     "force: it is neither a callable nor a C": dict(force=5),
+    "stiffness: it is neither a callable nor a matrix": dict(stiffness=5),
     "dimension 4": dict(dimension=4),
     r"mass: its shape is \(2, 3\)": dict(mass=np.ones((2, 3)), dimension=2),
     "mass: allowed are": dict(mass=[1.0, -1.0]),
