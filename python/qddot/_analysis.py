@@ -106,8 +106,8 @@ def equilibrium(
     else:
         if not of.has_potential:
             raise ValueError(
-                "equilibrium: the System has no V, which it goes downhill on; give it a "
-                "potential"
+                "equilibrium: the System has no V, which it goes downhill on; give "
+                f"{of.name!r} a potential"
             )
         require_stiffness(of, "equilibrium")
         start = model_of(of, q0)
@@ -164,7 +164,9 @@ def stability_limit(
 def require_stiffness(of: Scene | System, what: str) -> None:
     """Raises ValueError for a System without K."""
     if isinstance(of, System) and not of.has_stiffness:
-        raise ValueError(f"{what}: the System has no K; give it its stiffness, or a pattern of it")
+        raise ValueError(
+            f"{what}: the System has no K; give {of.name!r} its stiffness, or a pattern of it"
+        )
 
 
 def _shaped(of: Scene | System, nodes: Floats) -> Floats:

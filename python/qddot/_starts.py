@@ -81,13 +81,13 @@ def require_offered(of: System, chosen: Method) -> None:
             )
     if "constant_stiffness" in chosen.needs and not of.linear:
         raise ValueError(
-            f"{chosen.name} needs a K that is the same everywhere: if that of the System is, give "
+            f"{chosen.name} needs a K that is the same everywhere: if that of {of.name!r} is, give "
             "it as a matrix, or say linear=True; or take another method"
         )
     if "stiffness" in chosen.needs and not of.has_stiffness:
         raise ValueError(
-            f"{chosen.name} needs K: give the System its stiffness, or a pattern by which "
-            "it is made of differences of the force; or take an explicit method"
+            f"{chosen.name} needs K: give {of.name!r} its stiffness, or a pattern by which it is "
+            "made of differences of the force; or take an explicit method"
         )
 
 
