@@ -50,13 +50,19 @@ def save(
         json.dump(_reference(scene, reference), file, indent=1)
 
 
-def drawn_chart(folder: str, ending: str) -> bytes:
+def drawn_chart(folder: str, ending: str, everything: bool) -> bytes:
     """The picture, .png or .svg, of the chart whose files are in the folder. Raises ImportError if
     matplotlib is missing."""
     require_package("matplotlib", "charts are drawn by")
+    all_of_it = ["--all"] if everything else []
     done = subprocess.run(
-        [sys.executable, os.path.join(_drawing, "work_precision.py"), folder],
-        env={**os.environ, "PYTHONPATH": _drawing, "MPLBACKEND": "Agg"},
+        [sys.executable, os.path.join(_drawing, "work_precision.py"), folder, *all_of_it],
+        env={
+            **os.environ,
+            "PYTHONPATH": _drawing,
+            "MPLBACKEND": "Agg",
+            "QDDOT_SHOWS_ALL": "everything=True",
+        },
         capture_output=True,
         text=True,
     )
@@ -154,19 +160,21 @@ class WorkPrecision:
         tables = {"points": self.points, "front": self.front}
         save(folder, tables, self.record, self.scene, self.reference._record)
 
-    def draw(self, path: str | os.PathLike[str]) -> None:
-        """Draws the chart into a PNG or SVG file. Raises ImportError if matplotlib is missing."""
+    @knows_its_arguments
+    def draw(self, path: str | os.PathLike[str], *, everything: bool = False) -> None:
+        """Draws the chart into a PNG or SVG file; `everything` names every method and shows its
+        failed runs. Raises ImportError if matplotlib is missing."""
         ending = os.path.splitext(os.fspath(path))[1].lower()
         if ending not in (".png", ".svg"):
             raise ValueError(f"{os.fspath(path)}: allowed are the endings .png and .svg")
-        drawn = self._drawn(ending)
+        drawn = self._drawn(ending, everything)
         with open(path, "wb") as file:
             file.write(drawn)
 
-    def _drawn(self, ending: str) -> bytes:
+    def _drawn(self, ending: str, everything: bool = False) -> bytes:
         with tempfile.TemporaryDirectory() as folder:
             self.save(folder)
-            return drawn_chart(folder, ending)
+            return drawn_chart(folder, ending, everything)
 
     def __repr__(self) -> str:
         methods = len(set(self.points["method"]))

@@ -360,6 +360,13 @@ class Meaning(Programs):
         table = problems.read_table("points.csv")
         self.assertTrue(np.array_equal(table["time_s"], chart.points["time_s"], equal_nan=True))
         chart.draw("chart.svg")
+        chart.draw("all.svg", everything=True)
+        # Pictures spell their option as here.
+        for name, words in (("chart.svg", "of 2 methods; everything=True shows"), ("all.svg", "")):
+            with open(name, encoding="utf-8") as file:
+                text = file.read()
+            self.assertIn(words, text)
+            self.assertNotIn("--all", text)
         with self.assertRaisesRegex(ValueError, "png"):
             chart.draw("chart.pdf")
         self.assertEqual(chart._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
