@@ -19,7 +19,8 @@ What is called:
 
 Arrays are float64 in C order, (nodes, dimension) or, over time, (times, nodes, dimension). Units
 are SI. A run that fails returns a Solution with an outcome; its `or_raise()` raises an exception
-instead. Wrong arguments raise a ValueError with one sentence.
+instead. Wrong arguments raise a ValueError with one sentence, and misspelt ones a TypeError with the
+nearest name.
 """
 
 from qddot import scenes
