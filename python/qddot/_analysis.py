@@ -14,7 +14,7 @@ from qddot._methods import method as method_named, options_for
 from qddot._names import knows_its_arguments
 from qddot._scene import Scene
 from qddot._starts import model_of
-from qddot._system import System
+from qddot._system import System, length_of
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -97,10 +97,10 @@ class StabilityLimit:
 
 @knows_its_arguments
 def equilibrium(
-    of: Scene | System, q0: ArrayLike | None = None, *, length: float = 1.0
+    of: Scene | System, q0: ArrayLike | None = None, *, length: float | None = None
 ) -> Equilibrium:
     """The stable equilibrium downhill from the drawn scene, or from q0 of a System of the size
-    `length` [m]."""
+    `length` [m]; default: the length of the System."""
     if isinstance(of, Scene):
         start = _qddot.model_of(of._handle, None, [])
     else:
@@ -111,7 +111,14 @@ def equilibrium(
             )
         require_stiffness(of, "equilibrium")
         start = model_of(of, q0)
-    record = _qddot.equilibrium(start, length)
+    size = 1.0
+    if isinstance(of, System):
+        size = of.length if length is None else length_of(length)
+    record = _qddot.equilibrium(start, size)
+    if isinstance(of, System) and record["outcome"] == "unbounded":
+        record["message"] = (
+            f"there is no equilibrium within a million lengths of the start (length = {size:g} m)"
+        )
     record["positions"] = _shaped(of, record["positions"])
     return Equilibrium(**record)
 

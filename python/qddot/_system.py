@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
-from qddot._arrays import Floats, floats, frozen, whole_numbers
+from qddot._arrays import Floats, floats, frozen, number, whole_numbers
 from qddot._names import knows_its_arguments
 
 if TYPE_CHECKING:
@@ -206,6 +206,14 @@ def callable_or_address(function: Any, name: str, count: int) -> Any:
     return function
 
 
+def length_of(value: Any) -> float:
+    """A length [m] above 0."""
+    x = number(value, "length")
+    if not (np.isfinite(x) and x > 0):
+        raise ValueError(f"length {value} is not allowed; it is a length in m above 0")
+    return x
+
+
 def _is_matrix(stiffness: Any) -> bool:
     return hasattr(stiffness, "tocsc") or isinstance(stiffness, (np.ndarray, list, tuple))
 
@@ -270,8 +278,8 @@ class System:
             )
         if not np.all(np.isfinite(m)) or np.any(m < 0) or m.size == 0:
             raise ValueError("mass: allowed are finite numbers of at least 0 in kg, one or more")
-        if length is not None and not (np.isfinite(length) and length > 0):
-            raise ValueError(f"length {length} is not allowed; it is a length in m above 0")
+        if length is not None:
+            length = length_of(length)
         self._mass = frozen(m.copy())
         self._dimension = dimension
         self._length = length
@@ -315,6 +323,12 @@ class System:
     def dimension(self) -> int | None:
         """The number of coordinates of a node; None if there are no nodes."""
         return self._dimension
+
+    @property
+    def length(self) -> float:
+        """A small length of the motion [m]: the one that was given, or else the extent of the first
+        start."""
+        return self._length or 1.0
 
     @property
     def has_potential(self) -> bool:

@@ -126,6 +126,24 @@ class Systems(Programs):
             qddot.System([1.0], forces[0], name=5)
 
 
+    def test_an_equilibrium_that_is_far_away_asks_for_a_length(self):
+        def pulled(**length):
+            potential = lambda q: float(((q - 5e6) ** 2).sum() / 2)
+            return qddot.System(
+                [1.0], lambda q, f: np.copyto(f, 5e6 - q), potential, [[-1.0]], **length
+            )
+
+        lost = qddot.equilibrium(pulled(), [0.0])
+        self.assertEqual(lost.outcome, "unbounded")
+        self.assertIn("(length = 1 m)", lost.message)
+        for of, given in ((pulled(), dict(length=1e3)), (pulled(length=1e3), {})):
+            found = qddot.equilibrium(of, [0.0], **given)
+            self.assertEqual(found.outcome, "reached")
+            self.assertAlmostEqual(found.positions[0], 5e6, delta=1e-6)
+        with self.assertRaisesRegex(ValueError, "length 0 is not allowed"):
+            qddot.equilibrium(pulled(), [0.0], length=0)
+
+
 class Matrices(unittest.TestCase):
     def test_forces_of_a_scene_are_the_gradient_of_its_energy(self):
         for dimension in (1, 2, 3):
