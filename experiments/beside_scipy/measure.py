@@ -104,7 +104,7 @@ def sweep(p, exact, way, options):
                 times.append(time.perf_counter() - begin)
         except (qddot.RunFailed, RuntimeError, FloatingPointError, ValueError):
             continue
-        error = exact.errors(q, v).position
+        error = exact.errors(q, v, t=exact.until).position
         if not math.isfinite(error) or error > 3:
             continue
         yield {

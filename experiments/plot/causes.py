@@ -1,6 +1,7 @@
 """The strip under a work-precision chart. It says for each cause of failure how many methods have
 failed runs, and at which values of their knobs."""
 
+from emphasis import SHOWS_ALL
 from failures import FONT_SIZE, KNOBS, TITLE
 from scene_row import counted
 from style import FAINT, number
@@ -97,7 +98,7 @@ def draw_strip(sheet, top, groups, looks):
     sheet.rule(top)
     sheet.text(MARGIN, top + 0.2, "Runs without a point above", size=10, weight="bold", va="center")
     failing = len({sweep[0].method for group in groups.values() for sweep in group})
-    note = f"{failing} of {counted(len(looks), 'method')}; --all shows each"
+    note = f"{failing} of {counted(len(looks), 'method')}; {SHOWS_ALL} shows each"
     edge = {"size": FONT_SIZE, "color": FAINT, "ha": "right", "va": "center"}
     sheet.text(sheet.width - MARGIN, top + 0.2, note, **edge)
     for line, (cause, names, words) in enumerate(lines(groups)):

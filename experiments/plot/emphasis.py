@@ -1,5 +1,6 @@
 """How strongly a work-precision chart draws each line: the methods that stand out, or all of them."""
 
+import os
 from dataclasses import dataclass
 
 from matplotlib.colors import to_hex, to_rgb
@@ -8,6 +9,8 @@ from prominent import looks_by_prominence, strong_methods
 from record import sweeps
 from style import FAINT, assign_looks, family_look
 
+# How the caller asks for all methods: Python's module has another word for it.
+SHOWS_ALL = os.environ.get("QDDOT_SHOWS_ALL", "--all")
 LABEL_SIZE = 9.5
 # A method stays in the background of a crowded chart if it is nowhere nearer to the front than
 # this; only errors small enough to matter count.
@@ -122,7 +125,7 @@ class Prominent:
         if not self.pale:
             return None
         methods = "method" if self.pale == 1 else "methods"
-        words = f"pale: {self.pale} other {methods} (--all names them)"
+        words = f"pale: {self.pale} other {methods} ({SHOWS_ALL} names them)"
         style = {"color": pale(FAINT), "linewidth": 1.2, "marker": "o", "markersize": 3}
         return words, style
 

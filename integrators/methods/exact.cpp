@@ -2,9 +2,10 @@
 // columns of U are the modes, w_k their frequencies, and y_k the part of the motion in mode k:
 //   -M^-1/2 K M^-1/2 = U diag(w_k^2) U^T,   y = U^T M^1/2 (q - q_n),   b = U^T M^-1/2 f(q_n)
 //   y_k(h) = y_k'(0) sin(w_k h)/w_k + b_k (1 - cos(w_k h))/w_k^2
-// A mode with w_k = 0 moves by y_k'(0) h + b_k h^2/2. So no step size has a step error; what is
-// left is rounding. The modes are found once a run by a dense eigenproblem. It takes n^3 time and
-// n^2 memory for n unknowns, and more than 2000 of them are refused.
+// A mode with w_k = 0 moves by y_k'(0) h + b_k h^2/2, and one with w_k^2 < 0 by hyperbolic
+// functions. So no step size has a step error; what is left is rounding. The modes are found once a
+// run by a dense eigenproblem. It takes n^3 time and n^2 memory for n unknowns, and more than 2000
+// of them are refused.
 #include <memory>
 
 #include <fmt/format.h>

@@ -1,5 +1,7 @@
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "experiments/record/chart_record.hpp"
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
@@ -8,7 +10,7 @@
 #include "qddot/measure/exchange/energy_exchange.hpp"
 #include "qddot/measure/exchange/excitation.hpp"
 #include "qddot/measure/motion/simulation.hpp"
-#include "qddot/measure/reference/reference.hpp"
+#include "qddot/measure/reference/reference_path.hpp"
 #include "qddot/measure/speed/work_precision.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
 
@@ -16,8 +18,22 @@ namespace qddot::python {
 namespace {
 using py::arg;
 
-HeldReference reference_of(const Model& model, double until, double seconds) {
-  return {model, made_outside([&] {
+// What is made outside Python in about so many seconds. If that is too little, the sentence names
+// Python's argument of them.
+template <class Make>
+auto made_in(double seconds, const std::string& argument, const Make& make) {
+  try {
+    return made_outside(make);
+  } catch (const NoReference& error) {
+    if (!error.needs_time()) throw;
+    throw NoReference(
+        fmt::format("{}, or for more time ({} = {:g})", error.what(), argument, seconds));
+  }
+}
+
+HeldReference reference_of(const Model& model, double until, double seconds,
+                           const std::string& argument) {
+  return {model, made_in(seconds, argument, [&] {
             return make_reference(*model.reduced, until, seconds, model.start.get());
           })};
 }
@@ -49,21 +65,45 @@ py::dict end_of(const HeldReference& held) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// Errors of positions and velocities of all nodes at the reference's end, for any method's result.
-py::tuple errors_of(const HeldReference& held, const Doubles& q, const Doubles& v) {
-  const ReducedScene& scene = *held.model.reduced;
-  const auto exact = scene.expand(held.reference.end);
-  const int d = scene.dimension();
+// Errors of positions and velocities of all nodes, q and v, against the state `at` of the
+// reference.
+std::pair<double, double> errors_at(const HeldReference& held, const State& at, const double* q,
+                                    const double* v) {
+  const auto exact = held.model.reduced->expand(at);
+  const int d = held.model.reduced->dimension();
   std::vector<Node> nodes = exact;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  for (Node& node : nodes) {
     for (int c = 0; c < d; ++c) {
-      const auto at = static_cast<py::ssize_t>(i) * d + c;
-      nodes[i].position[c] = q.data()[at];
-      nodes[i].velocity[c] = v.data()[at];
+      node.position[c] = *q++;
+      node.velocity[c] = *v++;
     }
   }
   const Scales& scales = held.reference.scales;
-  return py::make_tuple(position_error(nodes, exact, scales), velocity_error(nodes, exact, scales));
+  return {position_error(nodes, exact, scales), velocity_error(nodes, exact, scales)};
+}
+
+// Those at the reference's end, for any method's result.
+std::pair<double, double> errors_of(const HeldReference& held, const Doubles& q, const Doubles& v) {
+  return errors_at(held, held.reference.end, q.data(), v.data());
+}
+
+// Those at each of the times (times, nodes, dimension), and the bounds of the reference's own
+// errors of positions.
+py::tuple errors_along(const HeldReference& held, const std::vector<double>& times,
+                       const Doubles& q, const Doubles& v, double seconds) {
+  const ReferencePath path = made_in(seconds, "seconds", [&] {
+    return path_of(*held.model.reduced, held.reference, times, seconds);
+  });
+  std::vector<double> positions, velocities;
+  const py::ssize_t frame = times.empty() ? 0 : q.size() / std::ssize(times);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const py::ssize_t first = static_cast<py::ssize_t>(k) * frame;
+    const auto [position, velocity] =
+        errors_at(held, path.states[k], q.data() + first, v.data() + first);
+    positions.push_back(position);
+    velocities.push_back(velocity);
+  }
+  return py::make_tuple(array_of(positions), array_of(velocities), array_of(path.certified));
 }
 
 std::vector<const Method*> methods_named(const Names& names) {
@@ -143,12 +183,14 @@ py::dict advise_on(const Model& model, double until, const std::vector<double>& 
                   arg("runs") = all.runs, arg("seconds") = all.seconds);
 }
 
-// The trend of a scene's energy in a run of a method.
+// The trend of the energy of a scene, or of a system of the caller's own, in a run of a method.
 py::dict energy_trend_of(const Model& model, const std::string& name, const py::dict& given,
                          double until, double seconds) {
   const Options options = options_of(given);
   const DriftRun run = made_outside([&] {
-    DriftRun made = energy_trend(*model.start, method(name), options, until, seconds);
+    DriftRun made =
+        model.start ? energy_trend(*model.start, method(name), options, until, seconds)
+                    : energy_trend(model.reduced, Momenta(), method(name), options, until, seconds);
     stop_if_interrupted();
     return made;
   });
@@ -275,6 +317,7 @@ void add_measures(py::module_& module) {
   reference.def("record", [](const HeldReference& held) { return reference_record(held); });
   reference.def("end", &end_of);
   reference.def("errors", &errors_of);
+  reference.def("errors_along", &errors_along);
   module.def("reference", &reference_of);
   module.def("work_precision", &work_precision_of);
   module.def("advise", &advise_on);

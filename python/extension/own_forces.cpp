@@ -124,12 +124,13 @@ void Views::part(const py::object& view) {
 }
 
 OwnForces::OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Potential potential,
-                     py::object stiffness, SymmetricMatrix pattern)
+                     py::object stiffness, SymmetricMatrix pattern, bool is_linear)
     : System(std::move(mass)),
       force_(std::move(force)),
       potential_(std::move(potential)),
       stiffness_(std::move(stiffness)),
       pattern_(std::move(pattern)),
+      is_linear_(is_linear),
       views_(std::move(shape)) {}
 
 OwnForces::~OwnForces() {

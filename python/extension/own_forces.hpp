@@ -45,9 +45,10 @@ class OwnForces final : public System {
   using Force = std::variant<CForce, py::object>;
   using Potential = std::variant<std::monostate, CPotential, py::object>;
 
-  // `pattern`: the pattern of K; 0 x 0 without a stiffness.
+  // `pattern`: the pattern of K; 0 x 0 without a stiffness. `is_linear`: whether K is the same
+  // everywhere.
   OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Potential potential,
-            py::object stiffness, SymmetricMatrix pattern);
+            py::object stiffness, SymmetricMatrix pattern, bool is_linear);
   ~OwnForces() override;
 
   bool has_potential() const override { return potential_.index() > 0; }
@@ -55,6 +56,7 @@ class OwnForces final : public System {
   void force(const ConstVec& q, MutableVec f) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
+  bool stiffness_is_constant() const override { return is_linear_; }
 
  private:
   // Calls the callable with a view of q, and `use` with its result.
@@ -65,6 +67,7 @@ class OwnForces final : public System {
   Potential potential_;
   py::object stiffness_;
   SymmetricMatrix pattern_;
+  bool is_linear_;
   mutable Views views_;
 };
 

@@ -4,6 +4,7 @@
 #include "python/extension/outside.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/model/differenced_stiffness.hpp"
+#include "qddot/scene/drawn_system.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/scene_arrays.hpp"
@@ -128,17 +129,18 @@ OwnForces::Potential potential_of(const py::object& given) {
 }
 
 // A system of the caller's own. `pattern`: rows and columns of K, which is made of differences of f
-// without `stiffness`.
+// without `stiffness`. `is_linear`: whether K is the same everywhere.
 Model own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape, const py::object& force,
                 const py::object& potential, const py::object& stiffness,
                 const std::optional<std::pair<Indices, Indices>>& pattern, double length,
-                const Doubles& q, const Doubles& v, int dimension) {
+                const Doubles& q, const Doubles& v, int dimension, bool is_linear) {
   const Vec m = vec_of(mass);
   const bool computes = !stiffness.is_none();
   SymmetricMatrix own_pattern;
   if (computes) own_pattern = pattern_of(pattern->first, pattern->second, m.size());
-  std::shared_ptr<const System> system = std::make_shared<OwnForces>(
-      m, shape, force_of(force), potential_of(potential), stiffness, std::move(own_pattern));
+  std::shared_ptr<const System> system =
+      std::make_shared<OwnForces>(m, shape, force_of(force), potential_of(potential), stiffness,
+                                  std::move(own_pattern), is_linear);
   if (!computes && pattern) {
     std::vector<std::pair<Index, Index>> pairs;
     for (py::ssize_t a = 0; a < pattern->first.size(); ++a)
@@ -148,8 +150,8 @@ Model own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape, cons
   return {std::make_shared<const ReducedScene>(system, State{0, vec_of(q), vec_of(v)}, dimension)};
 }
 
-Vec unknowns(const Model& model, const Doubles& q) {
-  const Index n = model.reduced->system().size();
+Vec unknowns(const System& system, const Doubles& q) {
+  const Index n = system.size();
   if (q.size() != n)
     throw std::invalid_argument("q: " + std::to_string(q.size()) + " numbers; there are " +
                                 std::to_string(n) + " unknowns");
@@ -157,17 +159,16 @@ Vec unknowns(const Model& model, const Doubles& q) {
 }
 
 // Entries that a force does not write stay NaN.
-py::array_t<double> force_at(const Model& model, const Doubles& q) {
-  const Vec x = unknowns(model, q);
+py::array_t<double> force_at(const System& system, const Doubles& q) {
+  const Vec x = unknowns(system, q);
   Vec f = Vec::Constant(x.size(), std::numeric_limits<double>::quiet_NaN());
-  inside_python([&] { model.reduced->system().force(x, f); });
+  inside_python([&] { system.force(x, f); });
   return array_of(f);
 }
 
 // K as (data, indices, indptr) of its lower triangle, column by column.
-py::tuple stiffness_at(const Model& model, const Doubles& q) {
-  const System& system = model.reduced->system();
-  const Vec x = unknowns(model, q);
+py::tuple stiffness_at(const System& system, const Doubles& q) {
+  const Vec x = unknowns(system, q);
   SymmetricMatrix k = system.stiffness_pattern();
   inside_python([&] { system.stiffness(x, k); });
   k.makeCompressed();
@@ -178,6 +179,13 @@ py::tuple stiffness_at(const Model& model, const Doubles& q) {
   };
   return py::make_tuple(copied(k.valuePtr(), k.nonZeros()), copied(k.innerIndexPtr(), k.nonZeros()),
                         copied(k.outerIndexPtr(), k.cols() + 1));
+}
+
+double potential_at(const System& system, const Doubles& q) {
+  const Vec x = unknowns(system, q);
+  double v = 0;
+  inside_python([&] { v = system.potential(x); });
+  return v;
 }
 
 py::dict explanation_of(const Model& model) {
@@ -279,21 +287,29 @@ void add_models(py::module_& module) {
   has("v", [](const Model& m) { return array_of(m.reduced->initial().v); });
   has("has_potential", [](const Model& m) { return m.reduced->system().has_potential(); });
   has("has_stiffness", [](const Model& m) { return m.reduced->system().has_stiffness(); });
-  model.def("force", &force_at);
-  model.def("stiffness", &stiffness_at);
+  model.def("force", [](const Model& self, const Doubles& q) {
+    return force_at(self.reduced->system(), q);
+  });
+  model.def("stiffness", [](const Model& self, const Doubles& q) {
+    return stiffness_at(self.reduced->system(), q);
+  });
   model.def("potential", [](const Model& self, const Doubles& q) {
-    const Vec x = unknowns(self, q);
-    double v = 0;
-    inside_python([&] { v = self.reduced->system().potential(x); });
-    return v;
+    return potential_at(self.reduced->system(), q);
   });
   // The positions and velocities of all nodes of the scene, from the unknowns q and v.
   model.def("nodes_at", [](const Model& self, const Doubles& q, const Doubles& v, double t) {
-    const auto nodes = self.reduced->expand({t, unknowns(self, q), unknowns(self, v)});
+    const System& system = self.reduced->system();
+    const auto nodes = self.reduced->expand({t, unknowns(system, q), unknowns(system, v)});
     const int d = self.reduced->dimension();
     return py::make_tuple(array_of(nodes, &Node::position, d), array_of(nodes, &Node::velocity, d));
   });
   model.def("explain", &explanation_of);
+  // The forces of a scene as drawn, over the coordinates of all nodes.
+  py::class_<System>(module, "Drawn")
+      .def(py::init([](const Scene& scene) { return drawn_system(scene); }))
+      .def("force", &force_at)
+      .def("stiffness", &stiffness_at)
+      .def("potential", &potential_at);
   module.def("model_of", &model_of);
   module.def("own_model", &own_model);
 }

@@ -19,7 +19,8 @@ What is called:
 
 Arrays are float64 in C order, (nodes, dimension) or, over time, (times, nodes, dimension). Units
 are SI. A run that fails returns a Solution with an outcome; its `or_raise()` raises an exception
-instead. Wrong arguments raise a ValueError with one sentence.
+instead. Wrong arguments raise a ValueError with one sentence, and misspelt ones a TypeError with the
+nearest name.
 """
 
 from qddot import scenes
@@ -36,7 +37,7 @@ from qddot._analysis import (
 )
 from qddot._methods import Method, method, methods
 from qddot._qddot import InvalidInput, NoReference, __version__
-from qddot._reference import Errors, Reference, reference
+from qddot._reference import Errors, ErrorsAlong, Reference, reference
 from qddot._scene import Explanation, Scene
 from qddot._solve import Counts, Energy, RunFailed, Solution, State, solve
 from qddot._studies import (
@@ -61,6 +62,7 @@ __all__ = [
     "EnergyTrend",
     "Equilibrium",
     "Errors",
+    "ErrorsAlong",
     "Exchange",
     "ExchangeRun",
     "Explanation",

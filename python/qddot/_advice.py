@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from qddot import _qddot
 from qddot._arrays import number
+from qddot._names import knows_its_arguments
 from qddot._scene import Scene
 from qddot._solve import table_with_head
 from qddot._starts import end_of, model_of, require_measurable
@@ -97,6 +98,7 @@ class Advices:
         return table_with_head(head, rows)
 
 
+@knows_its_arguments
 def advise(
     of: Scene | System,
     accuracies: float | Sequence[float],

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from qddot import _qddot
 from qddot._arrays import Floats, count as whole_number, number
 from qddot._methods import method as method_named, options_for
+from qddot._names import knows_its_arguments
 from qddot._scene import Scene
 from qddot._starts import model_of
-from qddot._system import System
+from qddot._system import System, length_of
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -94,26 +95,35 @@ class StabilityLimit:
     step_size: float | None = None
 
 
+@knows_its_arguments
 def equilibrium(
-    of: Scene | System, q0: ArrayLike | None = None, *, length: float = 1.0
+    of: Scene | System, q0: ArrayLike | None = None, *, length: float | None = None
 ) -> Equilibrium:
     """The stable equilibrium downhill from the drawn scene, or from q0 of a System of the size
-    `length` [m]."""
+    `length` [m]; default: the length of the System."""
     if isinstance(of, Scene):
         start = _qddot.model_of(of._handle, None, [])
     else:
         if not of.has_potential:
             raise ValueError(
-                "equilibrium: the System has no V, which it goes downhill on; give it a "
-                "potential"
+                "equilibrium: the System has no V, which it goes downhill on; give "
+                f"{of.name!r} a potential"
             )
         require_stiffness(of, "equilibrium")
         start = model_of(of, q0)
-    record = _qddot.equilibrium(start, length)
+    size = 1.0
+    if isinstance(of, System):
+        size = of.length if length is None else length_of(length)
+    record = _qddot.equilibrium(start, size)
+    if isinstance(of, System) and record["outcome"] == "unbounded":
+        record["message"] = (
+            f"there is no equilibrium within a million lengths of the start (length = {size:g} m)"
+        )
     record["positions"] = _shaped(of, record["positions"])
     return Equilibrium(**record)
 
 
+@knows_its_arguments
 def modes(
     of: Scene | System,
     count: int = 10,
@@ -139,10 +149,11 @@ def modes(
 def linear_step(method: str, h_omega: float, **options: Any) -> LinearStep:
     """The effect of a step of the method on a vibration at h w; options are those of solve()."""
     chosen = method_named(method)
-    given = options_for(chosen, {**options, chosen.knob: 1.0})
+    given = options_for(chosen, {**options, chosen.knob: 1.0}, ("h_omega",))
     return LinearStep(**_qddot.linear_step(method, number(h_omega, "h_omega"), given))
 
 
+@knows_its_arguments
 def stability_limit(
     method: str, of: Scene | System | None = None, q0: ArrayLike | None = None
 ) -> StabilityLimit:
@@ -160,7 +171,9 @@ def stability_limit(
 def require_stiffness(of: Scene | System, what: str) -> None:
     """Raises ValueError for a System without K."""
     if isinstance(of, System) and not of.has_stiffness:
-        raise ValueError(f"{what}: the System has no K; give it its stiffness, or a pattern of it")
+        raise ValueError(
+            f"{what}: the System has no K; give {of.name!r} its stiffness, or a pattern of it"
+        )
 
 
 def _shaped(of: Scene | System, nodes: Floats) -> Floats:

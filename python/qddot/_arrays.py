@@ -62,6 +62,19 @@ def count(value: Any, name: str, least: int = 1, most: int | None = None) -> int
     return int(x)
 
 
+def ascending_times(value: ArrayLike, name: str, end: float) -> list[float]:
+    """Times [s] that ascend from 0 to the end."""
+    times = floats(value, name, one=True).reshape(-1).copy()
+    # The last number of np.arange may be some roundings beyond the end.
+    times[(times > end) & (times <= end * (1 + 1e-14))] = end
+    if times.size and not (np.all(np.diff(times) >= 0) and times[0] >= 0 and times[-1] <= end):
+        raise ValueError(
+            f"{name}: its times must ascend from 0 to until = {end!r} s, and they go from "
+            f"{float(times[0])!r} to {float(times[-1])!r}"
+        )
+    return [float(t) for t in times]
+
+
 def frozen(array: A) -> A:
     """The same array, read-only."""
     array.setflags(write=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Callable
@@ -11,6 +10,7 @@ import numpy as np
 
 from qddot import _qddot
 from qddot._arrays import count, number
+from qddot._names import hint
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,9 +55,8 @@ def method(name: str) -> Method:
     """The method of that name. If there is none, raises a ValueError that names all methods."""
     found = _all().get(name) if isinstance(name, str) else None
     if found is None:
-        nearest = difflib.get_close_matches(name, _all(), 1) if isinstance(name, str) else []
-        hint = f", the nearest is {nearest[0]}" if nearest else ""
-        raise ValueError(f"{name!r} is no method{hint}; there are {', '.join(_all())}")
+        nearest = hint(name, _all()) if isinstance(name, str) else ""
+        raise ValueError(f"{name!r} is no method{nearest}; there are {', '.join(_all())}")
     return found
 
 
@@ -87,9 +86,12 @@ _OPTIONS: dict[str, Callable[[Any, str], Any]] = {
 }
 
 
-def options_for(chosen: Method, given: dict[str, Any]) -> dict[str, Any]:
+def options_for(
+    chosen: Method, given: dict[str, Any], beside: tuple[str, ...] = ()
+) -> dict[str, Any]:
     """The given options in the form that the method takes. Raises ValueError for options that it
-    ignores, and if its knob is missing."""
+    ignores, and if its knob is missing. `beside`: names of other arguments, one of which may be
+    misspelt."""
     options = {
         n: _OPTIONS.get(n, number)(value, n) for n, value in given.items() if value is not None
     }
@@ -100,7 +102,12 @@ def options_for(chosen: Method, given: dict[str, Any]) -> dict[str, Any]:
     for name in options:
         if name not in ("step_size", "rtol", "atol", *chosen.takes):
             those = ", ".join(m.name for m in methods() if name in m.takes)
-            raise ValueError(f"{name} is not for {chosen.name}; it is for {those or 'no method'}")
+            raise ValueError(
+                f"{name} is not for {chosen.name}; it is for {those}"
+                if those
+                else f"{name} is not for {chosen.name}, nor for any other method"
+                f"{hint(name, (chosen.knob, 'rtol', 'atol', *chosen.takes, *beside))}"
+            )
     if chosen.knob not in options:
         what = "h in s" if chosen.knob == "step_size" else "a relative tolerance"
         raise ValueError(f"{chosen.knob} is missing; {chosen.name} needs it, {what} above 0")

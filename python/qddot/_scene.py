@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
 from qddot._arrays import Floats, floats, frozen, number, whole_numbers
+from qddot._names import hint, knows_its_arguments
+from qddot._optional import require_package
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,9 @@ class Scene:
     _handle: _qddot.Scene
     _start: _qddot.Scene | None
     _models: dict[tuple[object, ...], _qddot.Model]
+    _drawn: _qddot.Drawn | None
 
+    @knows_its_arguments
     def __init__(
         self,
         positions: ArrayLike,
@@ -136,6 +140,7 @@ class Scene:
         self._handle = handle
         self._start = None
         self._models = {}
+        self._drawn = None
 
     @classmethod
     def _of(cls, handle: _qddot.Scene) -> Scene:
@@ -154,6 +159,7 @@ class Scene:
         return cls._of(_qddot.Scene.parse(text, "the text", os.fspath(folder)))
 
     @classmethod
+    @knows_its_arguments
     def from_mesh(
         cls,
         file: str | os.PathLike[str],
@@ -227,7 +233,9 @@ class Scene:
         ).split()
         for name in changes:
             if name not in names:
-                raise ValueError(f"replace: {name} is none of {', '.join(names)}")
+                raise ValueError(
+                    f"replace: {name} is none of {', '.join(names)}{hint(name, names)}"
+                )
         return Scene(**{**{name: getattr(self, name) for name in names}, **changes})
 
     def to_toml(self) -> str:
@@ -247,6 +255,48 @@ class Scene:
         """The unknowns that remain, the reductions with their reasons, w_max and the largest stable
         step."""
         return Explanation(**self._model(keep=keep).explain())
+
+    def force(self, q: ArrayLike | None = None) -> Floats:
+        """f [N] on all nodes at the positions q [m], in the shape of q: (nodes, dimension) or
+        (nodes * dimension); default: as drawn. Pinned nodes have none."""
+        x = self._places(q)
+        return self._as_drawn().force(x).reshape(x.shape)
+
+    def potential(self, q: ArrayLike | None = None) -> float:
+        """V [J] at these positions, with f = -dV/dq for all nodes that are not pinned."""
+        return self._as_drawn().potential(self._places(q))
+
+    def stiffness_matrix(self, q: ArrayLike | None = None) -> Any:
+        """K = df/dq [N/m] at these positions: a scipy.sparse.csc_array, n x n with n = nodes *
+        dimension, symmetric, with the same entries at every q. Unknown dimension * i + c is
+        coordinate c of node i. Rows and columns of pinned nodes are zero. Nothing is left out, as
+        model() does. Raises ImportError if SciPy is missing."""
+        require_package("scipy", "stiffness_matrix makes a matrix of")
+        import scipy.sparse  # type: ignore[import]
+
+        data, rows, first = self._as_drawn().stiffness(self._places(q))
+        n = self.positions.size
+        columns = np.repeat(np.arange(n), np.diff(first))
+        below = rows != columns
+        i = np.concatenate((rows, columns[below]))
+        j = np.concatenate((columns, rows[below]))
+        entries = np.concatenate((data, data[below]))
+        return scipy.sparse.coo_array((entries, (i, j)), (n, n)).tocsc()
+
+    def _places(self, q: ArrayLike | None) -> Floats:
+        shape = self.positions.shape
+        x = self.positions if q is None else floats(q, "q")
+        if x.shape not in (shape, (x.size,)) or x.size != self.positions.size:
+            raise ValueError(
+                f"q: its shape is {x.shape}; allowed is that of all nodes, {shape} or "
+                f"({self.positions.size})"
+            )
+        return x
+
+    def _as_drawn(self) -> _qddot.Drawn:
+        if self._drawn is None:
+            self._drawn = _qddot.Drawn(self._handle)
+        return self._drawn
 
     def model(self, keep: Sequence[str] = ()) -> _qddot.Model:
         """The smallest system with the motion of the scene, over its unknowns q: mass, force(q),

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
-from qddot._arrays import Floats, count, floats, number
+from qddot._arrays import Floats, ascending_times, count, floats, number
 from qddot._methods import Method, method as method_named, options_for
+from qddot._names import knows_its_arguments
 from qddot._scene import Scene
 from qddot._starts import Start, end_of, require_measurable, require_offered, seconds_of
 from qddot._system import System
@@ -68,7 +69,7 @@ class State:
 @dataclass(frozen=True, repr=False, eq=False)
 class Solution:
     """The motion that a method computed, at the times t of `save_at` that it reached (at its end
-    alone if none were asked for), and at its end.
+    alone if none were asked for), and at its end. Called with times, it gives q and v there.
 
     q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
     buffer. energy is None for a System without a potential. outcome is "reached_end" or the kind of
@@ -103,6 +104,24 @@ class Solution:
     runs: int = 1
     seconds_in_all: float | None = None
     _diagnose: Callable[[float], str] | None = field(default=None, repr=False, compare=False)
+    _repeat: Callable[[list[float]], Floats] | None = field(default=None, repr=False, compare=False)
+
+    def __call__(self, t: ArrayLike) -> tuple[Floats, Floats]:
+        """q and v at the time t [s], or at several times in any order up to t_reached: (nodes,
+        dimension) or (times, nodes, dimension). They are those that save_at gives: the run is
+        repeated for each call, so ask for all times at once."""
+        if self._repeat is None:
+            raise ValueError("no run is known to repeat, as after pickling: solve with save_at")
+        asked = floats(t, "t")
+        if not np.all((asked >= 0) & (asked <= self.t_reached)):
+            raise ValueError(f"t: allowed are times from 0 to t_reached = {self.t_reached!r} s")
+        times, place = np.unique(asked, return_inverse=True)
+        motion = self._repeat([float(x) for x in times])
+        q, v = motion.reshape(2, len(times), *self.end.q.shape)
+        if times.size and times[-1] == self.t_reached:
+            q[-1], v[-1] = self.end.q, self.end.v
+        shape, each = np.shape(t) + self.end.q.shape, place.reshape(-1)
+        return q[each].reshape(shape), v[each].reshape(shape)
 
     @property
     def success(self) -> bool:
@@ -123,7 +142,8 @@ class Solution:
         return self._diagnose(seconds) if self._diagnose else ""
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_diagnose": None}  # it holds a model, which no other process has
+        # Both hold a model, which no other process has.
+        return {**self.__dict__, "_diagnose": None, "_repeat": None}
 
     def __repr__(self) -> str:
         words = [f"{self.method} at {self.knob} = {self.value:.4g}: {self.outcome}"]
@@ -164,6 +184,7 @@ def table_with_head(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return f"<table><tr>{titles}</tr>{''.join(cells)}</table>"
 
 
+@knows_its_arguments
 def solve(
     of: Scene | System,
     method: str | None = None,
@@ -218,7 +239,7 @@ def solve(
         compensated=compensated,
     )
     end = end_of(of, until)
-    times = None if save_at is None else _times(save_at, end)
+    times = None if save_at is None else ascending_times(save_at, "save_at", end)
     threads = count(threads, "threads", 1, 256)
     if seconds is not None:
         seconds = seconds_of(seconds, "seconds")
@@ -238,25 +259,21 @@ def solve(
                 f"accuracy_of: {accuracy_of!r}; allowed are positions, path and energy"
             )
         start = Start(of, q0, v0, tuple(keep))
-        return _answer(start, end, times, accuracy, accuracy_of, seconds, threads)
+        answer = _answer(start, end, times, accuracy, accuracy_of, seconds, threads)
+        is_late = not answer.success and (answer.seconds_in_all or 0) >= (seconds or math.inf)
+        return _stopped_by(seconds, answer) if is_late else answer
     assert method is not None
     chosen = method_named(method)
     options = options_for(chosen, given)
     if isinstance(of, System):
         require_offered(of, chosen)
-    return _run(Start(of, q0, v0, tuple(keep)), chosen, options, end, times, seconds, threads)
+    run = _run(Start(of, q0, v0, tuple(keep)), chosen, options, end, times, seconds, threads)
+    is_late = run.outcome == "over_budget" and seconds is not None
+    return _stopped_by(seconds, run) if is_late else run
 
 
-def _times(save_at: ArrayLike, end: float) -> list[float]:
-    times = floats(save_at, "save_at", one=True).reshape(-1).copy()
-    # The last number of np.arange may be some roundings beyond the end.
-    times[(times > end) & (times <= end * (1 + 1e-14))] = end
-    if times.size and not (np.all(np.diff(times) >= 0) and times[0] >= 0 and times[-1] <= end):
-        raise ValueError(
-            f"save_at: its times must ascend from 0 to until = {end!r} s, and they go from "
-            f"{float(times[0])!r} to {float(times[-1])!r}"
-        )
-    return [float(t) for t in times]
+def _stopped_by(seconds: float | None, solution: Solution) -> Solution:
+    return replace(solution, message=f"{solution.message} (seconds = {seconds:g})")
 
 
 def _run(
@@ -274,7 +291,7 @@ def _run(
     energies = np.empty((3, len(looks))) if model.has_potential else None
     record = _qddot.run(model, chosen.name, options, end, looks, motion, energies, seconds, threads)
     if record["growth"] and record["summary"]["outcome"] == "reached_end":
-        warnings.warn(record["growth"], RuntimeWarning, stacklevel=3)
+        warnings.warn(record["growth"], RuntimeWarning, stacklevel=4)
     state, seen = State(**record["end"]), record["seen"]
     about = dict(
         method=chosen.name,
@@ -282,6 +299,7 @@ def _run(
         value=float(options[chosen.knob]),
         seconds=record["seconds"],
         _diagnose=_diagnosis(start, chosen, options, end),
+        _repeat=_repetition(start, chosen, options, end, record["summary"], threads),
     )
     if times is None:
         return _at_end(start.of, record, state, about)
@@ -299,6 +317,26 @@ def _diagnosis(
         return _qddot.why_it_failed(start.model(chosen), chosen.name, options, end, seconds)
 
     return diagnose
+
+
+def _repetition(
+    start: Start,
+    chosen: Method,
+    options: dict[str, Any],
+    end: float,
+    summary: dict[str, Any],
+    threads: int,
+) -> Callable[[list[float]], Floats]:
+    # A run that was stopped would go on; all others end as they did.
+    last = summary["t_reached"] if summary["outcome"] == "over_budget" else end
+
+    def repeat(times: list[float]) -> Floats:
+        model = start.model(chosen)
+        motion = np.empty((2, len(times), model.nodes, model.dimension))
+        _qddot.run(model, chosen.name, options, last, times, motion, None, None, threads)
+        return motion
+
+    return repeat
 
 
 def _at_end(
@@ -364,6 +402,7 @@ def _answer(
     about.update(method=chosen.name, knob=chosen.knob, value=record["value"])
     if times is None:
         about["_diagnose"] = _diagnosis(start, chosen, options, end)
+        about["_repeat"] = _repetition(start, chosen, options, end, record["summary"], threads)
         return _at_end(start.of, record, State(**record["end"]), about)
     # Repeats the chosen run and records these times. It ends in the same state, except with methods
     # that end steps at the times.

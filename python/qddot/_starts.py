@@ -61,13 +61,14 @@ def require_measurable(of: Scene | System, what: str) -> None:
         (of.has_stiffness, "a stiffness, or a " "pattern of it"),
     ):
         if not has:
-            raise ValueError(f"{what}: a System must have V and K for this; give it {missing}")
+            raise ValueError(
+                f"{what}: a System must have V and K for this; give {of.name!r} {missing}"
+            )
 
 
 def require_offered(of: System, chosen: Method) -> None:
     """Raises ValueError for a method that needs something that the System does not compute."""
     others = {
-        "constant_stiffness": "a K that is the same everywhere",
         "split_forces": "stiff springs",
         "discrete_gradient": "the discrete gradient of springs",
         "laplacian": "the matrix of springs of rest length zero",
@@ -78,10 +79,15 @@ def require_offered(of: System, chosen: Method) -> None:
                 f"{chosen.name} needs {others[need]}, which a System does not offer: "
                 "take another method, or a Scene"
             )
+    if "constant_stiffness" in chosen.needs and not of.linear:
+        raise ValueError(
+            f"{chosen.name} needs a K that is the same everywhere: if that of {of.name!r} is, give "
+            "it as a matrix, or say linear=True; or take another method"
+        )
     if "stiffness" in chosen.needs and not of.has_stiffness:
         raise ValueError(
-            f"{chosen.name} needs K: give the System its stiffness, or a pattern by which "
-            "it is made of differences of the force; or take an explicit method"
+            f"{chosen.name} needs K: give {of.name!r} its stiffness, or a pattern by which it is "
+            "made of differences of the force; or take an explicit method"
         )
 
 

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from qddot import _qddot
 from qddot._arrays import Floats, count, number
 from qddot._methods import method as method_named, options_for
-from qddot._reference import Reference, reference as make_reference
+from qddot._names import knows_its_arguments
+from qddot._reference import Reference, made_reference
 from qddot._scene import Scene
 from qddot._solve import solve
-from qddot._starts import end_of, seconds_of
+from qddot._starts import end_of, model_of, require_offered, seconds_of
 from qddot._system import System
 
 
@@ -37,6 +38,7 @@ class Convergence:
         return "\n".join(lines)
 
 
+@knows_its_arguments
 def convergence(
     of: Scene | System,
     method: str,
@@ -47,9 +49,10 @@ def convergence(
     q0: ArrayLike | None = None,
     v0: ArrayLike | None = None,
     reference: Reference | None = None,
+    reference_seconds: float = 10,
 ) -> Convergence:
     """The observed order of convergence of a method of fixed steps, from `step_size` [s] on."""
-    exact = reference or make_reference(of, until, q0=q0, v0=v0)
+    exact = reference or made_reference(of, until, q0, v0, reference_seconds, "reference_seconds")
     exact.require(of, q0, v0)
     if until is not None and until != exact.until:
         raise ValueError(f"reference: it is that of {exact.until:g} s, and until is {until:g} s")
@@ -98,6 +101,7 @@ class Exchange:
     runs: list[ExchangeRun]
 
 
+@knows_its_arguments
 def exchange(
     of: Scene,
     methods: Sequence[str],
@@ -149,25 +153,32 @@ class EnergyTrend:
 
 
 def energy_trend(
-    of: Scene,
+    of: Scene | System,
     method: str,
     *,
     until: float | None = None,
     step_size: float | None = None,
     rtol: float | None = None,
+    q0: ArrayLike | None = None,
+    v0: ArrayLike | None = None,
     seconds: float = 60,
     **options: Any,
 ) -> EnergyTrend:
-    """Runs the method on a scene up to `until` [s], for `seconds` of wall time at most. Says
-    whether its energy error stays bounded, drifts or blows up, or its energy is dissipated. Options
-    as in solve()."""
-    if not isinstance(of, Scene):
-        raise TypeError("energy_trend is for a qddot.Scene, whose momenta are known")
+    """Runs the method on a scene, or on a System with a potential from q0 and v0, up to `until`
+    [s], for `seconds` of wall time at most. Says whether its energy error stays bounded, drifts or
+    blows up, or its energy is dissipated. Options as in solve()."""
     chosen = method_named(method)
-    given = options_for(chosen, {"step_size": step_size, "rtol": rtol, **options})
-    if chosen.knob == "rtol":
-        given.pop("step_size", None)
-    record = _qddot.energy_trend(
-        of._model(), chosen.name, given, end_of(of, until), seconds_of(seconds, "seconds")
-    )
+    names = ("until", "q0", "v0", "seconds")
+    given = options_for(chosen, {"step_size": step_size, "rtol": rtol, **options}, names)
+    if isinstance(of, System):
+        require_offered(of, chosen)
+        if not of.has_potential:
+            raise ValueError(
+                "energy_trend: the System has no V, whose sum with T is the energy; give "
+                f"{of.name!r} a potential"
+            )
+    model, limit = model_of(of, q0, v0), seconds_of(seconds, "seconds")
+    record = _qddot.energy_trend(model, chosen.name, given, end_of(of, until), limit)
+    if record["outcome"] == "over_budget":
+        record["words"] += f" (seconds = {limit:g})"
     return EnergyTrend(method=chosen.name, **record)

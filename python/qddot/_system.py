@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qddot import _qddot
-from qddot._arrays import Floats, floats, frozen, whole_numbers
+from qddot._arrays import Floats, floats, frozen, number, whole_numbers
+from qddot._names import knows_its_arguments
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,9 +29,9 @@ FEW, DIRECTIONS = 100, 3
 AS_IT_IS = "(check=False takes it as it is)"
 
 
-def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
+def check(model: _qddot.Model, length: float, has_own_stiffness: bool, linear: bool) -> None:
     """Compares f, V and K with each other's differences beside the start, where no symmetry hides
-    anything. `length` [m]: a small length there."""
+    anything; and those of a linear system at some distance. `length` [m]: a small length there."""
     start = model.q
     f = model.force(start)
     if not np.all(np.isfinite(f)):
@@ -53,7 +54,10 @@ def check(model: _qddot.Model, length: float, has_own_stiffness: bool) -> None:
         for _ in range(DIRECTIONS):
             _check_gradient(model, x, d, random.uniform(-1, 1, (2, x.size)))
     if model.has_stiffness:
-        _check_stiffness(model, x, random.uniform(-1, 1, x.size), d, has_own_stiffness)
+        u = random.uniform(-1, 1, x.size)
+        _check_stiffness(model, x, u, d, has_own_stiffness)
+        if linear:
+            _check_linear(model, x, length * u)
 
 
 def _directions(n: int, random: np.random.Generator) -> Iterator[Floats]:
@@ -111,6 +115,20 @@ def _check_stiffness(
         "stiffness: beside the start it is not df/dq, as differences of the force say"
         f"{sign} {AS_IT_IS}"
     )
+
+
+def _check_linear(model: _qddot.Model, x: Floats, step: Floats) -> None:
+    here, there = model.force(x), model.force(x + step)
+    change, k, k_there = there - here, _times(model, x, step), _times(model, x + step, step)
+    largest = float(max(np.max(np.abs(here)), np.max(np.abs(there)), np.max(np.abs(k))))
+    size = TOLERANCE * float(np.max(np.abs(k))) + ROUNDING * largest
+    for other, what in ((change, "the force changes"), (k_there, "K changes")):
+        if not np.max(np.abs(other - k)) <= size:
+            i = int(np.argmax(np.abs(other - k)))
+            raise ValueError(
+                f"linear: K is not the same everywhere: over a step away from the start {what} by "
+                f"{other[i]:.6g} N instead of {k[i]:.6g} N {AS_IT_IS}"
+            )
 
 
 def _times(model: _qddot.Model, x: Floats, u: Floats) -> Floats:
@@ -188,6 +206,18 @@ def callable_or_address(function: Any, name: str, count: int) -> Any:
     return function
 
 
+def length_of(value: Any) -> float:
+    """A length [m] above 0."""
+    x = number(value, "length")
+    if not (np.isfinite(x) and x > 0):
+        raise ValueError(f"length {value} is not allowed; it is a length in m above 0")
+    return x
+
+
+def _is_matrix(stiffness: Any) -> bool:
+    return hasattr(stiffness, "tocsc") or isinstance(stiffness, (np.ndarray, list, tuple))
+
+
 class System:
     """Your own forces: M q'' = f(q), with f = -dV/dq.
 
@@ -195,9 +225,10 @@ class System:
     have the shape (n), or (nodes, dimension).
 
     force(q, f) writes f [N]. potential(q) returns V [J]. stiffness(q) returns K = df/dq [N/m], n x
-    n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many codes have -K. q and
-    f are views of the solver's memory: q is read-only, and neither may be kept after the call.
-    force and potential may also be C functions (a Numba cfunc, a ctypes or cffi pointer), which
+    n and symmetric, as a scipy.sparse matrix or an array; mind the sign, many codes have -K. A
+    stiffness that is a matrix itself is the same everywhere: the system is linear. q and f are
+    views of the solver's memory: q is read-only, and neither may be kept after the call. force and
+    potential may also be C functions (a Numba cfunc, a ctypes or cffi pointer), which
     cost no more than those of qddot:
         void force(const double* q, double* f, int64_t n);
         double potential(const double* q, int64_t n);
@@ -208,25 +239,33 @@ class System:
     - stiffness or `pattern`: implicit methods, SUNDIALS', references, answers to an accuracy.
     A pattern has the nonzeros of K, which then is made of differences of f: a sparse or dense
     matrix of n x n unknowns or of nodes x nodes, pairs (m, 2) of unknowns, or "dense".
+    `linear` says that K is the same everywhere: it is then made once, and the method `exact` knows
+    the motion.
 
     `length` [m]: a small length of the motion, for these differences; default: the extent of the
     start. `check`: whether the system is checked beside its first start: f must be finite and equal
-    -dV/dq or, without V, have a symmetric df/dq, and K must agree with differences of f. Forces that depend on the velocity or on time
-    are not modelled: a force that takes them is refused.
+    -dV/dq or, without V, have a symmetric df/dq, K must agree with differences of f, and a linear
+    f must be so. `name`: its name in charts, files and messages. Forces that depend on the velocity
+    or on time are not modelled: a force that takes them is refused.
     """
 
+    @knows_its_arguments
     def __init__(
         self,
         mass: ArrayLike,
         force: Any,
         potential: Any = None,
-        stiffness: Callable[[Floats], Any] | None = None,
+        stiffness: Any = None,
         pattern: Any = None,
         *,
         dimension: int | None = None,
         length: float | None = None,
         check: bool = True,
+        linear: bool = False,
+        name: str = "system",
     ) -> None:
+        if not isinstance(name, str) or not name:
+            raise ValueError(f"name: {name!r} is no name")
         if dimension not in (None, 1, 2, 3):
             raise ValueError(f"dimension {dimension} is not allowed; it is 1, 2, 3 or None")
         m = floats(mass, "mass", one=True)
@@ -239,19 +278,41 @@ class System:
             )
         if not np.all(np.isfinite(m)) or np.any(m < 0) or m.size == 0:
             raise ValueError("mass: allowed are finite numbers of at least 0 in kg, one or more")
-        if length is not None and not (np.isfinite(length) and length > 0):
-            raise ValueError(f"length {length} is not allowed; it is a length in m above 0")
+        if length is not None:
+            length = length_of(length)
         self._mass = frozen(m.copy())
         self._dimension = dimension
         self._length = length
         self._force = callable_or_address(force, "force", 2)
         self._potential = callable_or_address(potential, "potential", 1)
-        self._stiffness = stiffness
-        if stiffness is not None:
+        self._name = name
+        self._linear = bool(linear)
+        self._stiffness: Callable[[Floats], Any] | None = None
+        if stiffness is not None and _is_matrix(stiffness):
+            constant = self._constant(stiffness)
+            self._stiffness, self._linear = lambda q: constant, True
+        elif stiffness is not None and not callable(stiffness):
+            raise ValueError("stiffness: it is neither a callable nor a matrix")
+        elif stiffness is not None:
             require_arguments(stiffness, "stiffness", 1)
+            self._stiffness = stiffness
+        elif linear and pattern is None:
+            raise ValueError(
+                "linear: the System has no K; give it its stiffness, or a pattern of it"
+            )
         self._kept_alive = (force, potential)
         self._pattern: Pattern | None = None if pattern is None else self._pairs(pattern)
         self._must_check = check
+
+    @property
+    def name(self) -> str:
+        """Its name in charts, files and messages."""
+        return self._name
+
+    @property
+    def linear(self) -> bool:
+        """Whether K is the same everywhere."""
+        return self._linear
 
     @property
     def mass(self) -> Floats:
@@ -264,6 +325,12 @@ class System:
         return self._dimension
 
     @property
+    def length(self) -> float:
+        """A small length of the motion [m]: the one that was given, or else the extent of the first
+        start."""
+        return self._length or 1.0
+
+    @property
     def has_potential(self) -> bool:
         """Whether it computes V."""
         return self._potential is not None
@@ -272,6 +339,18 @@ class System:
     def has_stiffness(self) -> bool:
         """Whether K is computed, or made of differences."""
         return self._stiffness is not None or self._pattern is not None
+
+    def _constant(self, matrix: Any) -> Any:
+        """A copy of a constant K. Raises ValueError if it is not n x n, finite and symmetric."""
+        n = self.mass.size
+        k = matrix.tocsc() if hasattr(matrix, "tocsc") else floats(matrix, "stiffness")
+        if k.shape != (n, n):
+            raise ValueError(f"stiffness: its shape is {k.shape}; allowed is {(n, n)}")
+        if not np.all(np.isfinite(k.data if hasattr(k, "tocsc") else k)):
+            raise ValueError("stiffness: some of its entries are not finite")
+        if abs(k - k.T).max() > ROUNDING * abs(k).max():
+            raise ValueError("stiffness: it is not symmetric, as the K of a potential is")
+        return k.copy()
 
     def _pairs(self, pattern: Any) -> Pattern:
         n = self.mass.size
@@ -348,7 +427,7 @@ class System:
             self._pattern = self._pattern_near(q)
         model = self._made(q, v)
         if self._must_check:
-            check(model, self._length, self._stiffness is not None)
+            check(model, self._length, self._stiffness is not None, self._linear)
             self._must_check = False
         return model
 
@@ -365,6 +444,7 @@ class System:
             q.reshape(-1),
             v.reshape(-1),
             self.dimension or 1,
+            self._linear,
         )
 
     def _numbers(self, value: ArrayLike | None, name: str) -> Floats:
@@ -398,7 +478,10 @@ class System:
         offered += ["potential"] if self.has_potential else []
         offered += ["stiffness"] if self._stiffness is not None else []
         offered += ["pattern"] if self._stiffness is None and self.has_stiffness else []
-        return f"<qddot.System of {self.mass.size} unknowns: {', '.join(offered)}>"
+        kind = ", linear" if self.linear else ""
+        return (
+            f"<qddot.System {self.name!r}: {self.mass.size} unknowns{kind}; {', '.join(offered)}>"
+        )
 
 
 def _size_of(q: Floats) -> float:

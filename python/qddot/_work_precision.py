@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import inspect
 import json
 import math
 import os
@@ -18,7 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 from qddot import _qddot
 from qddot._arrays import count
 from qddot._methods import method as method_named
-from qddot._reference import Reference, reference as make_reference
+from qddot._names import knows_its_arguments
+from qddot._optional import require_package
+from qddot._reference import Reference, made_reference
 from qddot._scene import Scene
 from qddot._solve import table_with_head
 from qddot._starts import end_of, require_measurable, require_offered, seconds_of
@@ -47,11 +50,19 @@ def save(
         json.dump(_reference(scene, reference), file, indent=1)
 
 
-def drawn_chart(folder: str, ending: str) -> bytes:
-    """The picture, .png or .svg, of the chart whose files are in the folder."""
+def drawn_chart(folder: str, ending: str, everything: bool) -> bytes:
+    """The picture, .png or .svg, of the chart whose files are in the folder. Raises ImportError if
+    matplotlib is missing."""
+    require_package("matplotlib", "charts are drawn by")
+    all_of_it = ["--all"] if everything else []
     done = subprocess.run(
-        [sys.executable, os.path.join(_drawing, "work_precision.py"), folder],
-        env={**os.environ, "PYTHONPATH": _drawing, "MPLBACKEND": "Agg"},
+        [sys.executable, os.path.join(_drawing, "work_precision.py"), folder, *all_of_it],
+        env={
+            **os.environ,
+            "PYTHONPATH": _drawing,
+            "MPLBACKEND": "Agg",
+            "QDDOT_SHOWS_ALL": "everything=True",
+        },
         capture_output=True,
         text=True,
     )
@@ -149,19 +160,21 @@ class WorkPrecision:
         tables = {"points": self.points, "front": self.front}
         save(folder, tables, self.record, self.scene, self.reference._record)
 
-    def draw(self, path: str | os.PathLike[str]) -> None:
-        """Draws the chart into a PNG or SVG file. Raises RuntimeError if matplotlib is missing."""
+    @knows_its_arguments
+    def draw(self, path: str | os.PathLike[str], *, everything: bool = False) -> None:
+        """Draws the chart into a PNG or SVG file; `everything` names every method and shows its
+        failed runs. Raises ImportError if matplotlib is missing."""
         ending = os.path.splitext(os.fspath(path))[1].lower()
         if ending not in (".png", ".svg"):
             raise ValueError(f"{os.fspath(path)}: allowed are the endings .png and .svg")
-        drawn = self._drawn(ending)
+        drawn = self._drawn(ending, everything)
         with open(path, "wb") as file:
             file.write(drawn)
 
-    def _drawn(self, ending: str) -> bytes:
+    def _drawn(self, ending: str, everything: bool = False) -> bytes:
         with tempfile.TemporaryDirectory() as folder:
             self.save(folder)
-            return drawn_chart(folder, ending)
+            return drawn_chart(folder, ending, everything)
 
     def __repr__(self) -> str:
         methods = len(set(self.points["method"]))
@@ -175,7 +188,7 @@ class WorkPrecision:
         if drawn is None:
             try:
                 drawn = self._drawn(".png")
-            except RuntimeError:
+            except (ImportError, RuntimeError):
                 return None  # the table works without matplotlib, too
             object.__setattr__(self, "_png", drawn)
         return drawn
@@ -204,6 +217,20 @@ def _table(names: Sequence[str], records: list[dict[str, Any]]) -> NDArray[Any]:
     return table
 
 
+def require_one_argument(function: Callable[..., Any], name: str) -> None:
+    """Raises ValueError for a callable that cannot be called with one argument."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # C functions have none
+        return
+    try:
+        signature.bind(None)
+    except TypeError:
+        raise ValueError(
+            f"{name}: it takes {signature}; it is called as {name}(point)"
+        ) from None
+
+
 class _Progress:
     """A line on stderr with the last measured point."""
 
@@ -222,6 +249,7 @@ class _Progress:
         sys.stderr.flush()
 
 
+@knows_its_arguments
 def work_precision(
     of: Scene | System,
     until: float | None = None,
@@ -251,10 +279,12 @@ def work_precision(
             require_offered(of, chosen)
     end = end_of(of, until)
     limit, repeats = seconds_of(point_limit, "point_limit"), count(repeats, "repeats", 1, 1000)
-    exact = reference or make_reference(of, end, q0=q0, v0=v0, seconds=reference_seconds)
+    exact = reference or made_reference(of, end, q0, v0, reference_seconds, "reference_seconds")
     exact.require(of, q0, v0)
     if exact.until != end:
         raise ValueError(f"reference: it is that of {exact.until:g} s, and until is {end:g} s")
+    if callable(progress):
+        require_one_argument(progress, "progress")
     line = _Progress() if progress is True else None
     see = line if line else progress if callable(progress) else None
 
@@ -269,7 +299,7 @@ def work_precision(
     finally:
         if line:
             line.end()
-    scene = of.name if isinstance(of, Scene) else "system"
+    scene = of.name
     for record in made["points"]:
         record["scene"] = scene
     points = _table(COLUMNS, made["points"])

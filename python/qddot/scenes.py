@@ -7,6 +7,7 @@ import inspect
 from typing import Any, Protocol
 
 from qddot import _qddot
+from qddot._names import hint
 from qddot._scene import Scene
 
 
@@ -19,7 +20,15 @@ class Generator(Protocol):
 def _draw(record: dict[str, Any]) -> Generator:
     name: str = record["name"]
 
+    names = [p["name"] for p in record["parameters"]]
+
     def draw(**parameters: float) -> Scene:
+        for other in parameters:
+            if other not in names:
+                raise ValueError(
+                    f"{other} is not a parameter of {name}{hint(other, names)}; allowed are "
+                    f"{', '.join(names)}"
+                )
         return Scene._of(_qddot.Scene.generate(name, parameters))
 
     lines = [record["summary"], ""]
@@ -43,7 +52,9 @@ def __getattr__(name: str) -> Generator:
         return _generators[name]
     except KeyError:
         those = ", ".join(_generators)
-        raise AttributeError(f"{name} is no generator of scenes; there are {those}") from None
+        raise AttributeError(
+            f"{name} is no generator of scenes{hint(name, _generators)}; there are {those}"
+        ) from None
 
 
 def __dir__() -> list[str]:

@@ -43,7 +43,52 @@ double equation_error(const MotionFrom& motion, const System& system, double t) 
 // 1e-5 in v'. Rounding is far below it.
 constexpr double difference_error = 1e-5;
 
+// V = 1/2 4 (x - 1)^2 - 1/2 9 y^2 in turned axes x and y: a valley along x, a hill along y.
+class Saddle final : public System {
+ public:
+  Saddle() : System(Vec::Constant(2, 2.0)) {
+    Eigen::Matrix2d axes;
+    axes << 0.6, -0.8, 0.8, 0.6;
+    const Eigen::MatrixXd k = axes * Eigen::Vector2d(-4, 9).asDiagonal() * axes.transpose();
+    k_ = Eigen::MatrixXd(k.triangularView<Eigen::Lower>()).sparseView();
+    lowest_ = axes.col(0);
+  }
+  double potential(const ConstVec& q) const override {
+    const Vec x = q - lowest_;
+    return -0.5 * x.dot(k_.selfadjointView<Eigen::Lower>() * x);
+  }
+  void force(const ConstVec& q, MutableVec f) const override {
+    f = k_.selfadjointView<Eigen::Lower>() * (q - lowest_);
+  }
+  const SymmetricMatrix& stiffness_pattern() const override { return k_; }
+  void stiffness(const ConstVec&, SymmetricMatrix& k) const override { k = k_; }
+  bool stiffness_is_constant() const override { return true; }
+
+ private:
+  SymmetricMatrix k_{2, 2};
+  Vec lowest_;
+};
+
 }  // namespace
+
+BOOST_AUTO_TEST_CASE(a_mode_along_which_the_potential_falls_grows_exponentially) {
+  const Saddle saddle;
+  const double s = std::sqrt(4.5), w = std::sqrt(2.0);  // with masses of 2 kg
+  const Vec valley = (Vec(2) << 0.6, 0.8).finished(), hill = (Vec(2) << -0.8, 0.6).finished();
+  const Vec q0 = 1.5 * valley + 0.1 * hill, v0 = 0.3 * valley - 0.2 * hill;
+  const MotionFrom motion(saddle, {0, q0, v0});
+  for (const double t : {0.0, 0.01, 1.0, 5.0}) {
+    const State state = motion.at(t);
+    const Vec q = (1 + 0.5 * std::cos(w * t) + 0.3 / w * std::sin(w * t)) * valley +
+                  (0.1 * std::cosh(s * t) - 0.2 / s * std::sinh(s * t)) * hill;
+    const Vec v = (0.3 * std::cos(w * t) - 0.5 * w * std::sin(w * t)) * valley +
+                  (0.1 * s * std::sinh(s * t) - 0.2 * std::cosh(s * t)) * hill;
+    // Roundings of s and of the start grow by exp(st), and by st.
+    const double tolerance = 16 * eps * (1 + s * t) * std::exp(s * t);
+    BOOST_TEST((state.q - q).norm() < tolerance);
+    BOOST_TEST((state.v - v).norm() < tolerance * (1 + s));
+  }
+}
 
 BOOST_AUTO_TEST_CASE(oscillator_follows_its_closed_form_for_a_thousand_periods) {
   const Oscillator o;

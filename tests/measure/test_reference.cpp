@@ -1,7 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/measure/reference/reference.hpp"
+#include "qddot/measure/reference/reference_path.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "tests/fragments.hpp"
@@ -53,6 +53,26 @@ BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
                slack * made.certified.position * made.scales.displacement);
     BOOST_TEST(std::abs(made.end.v[0] - v) <= slack * made.certified.velocity * made.scales.speed);
   }
+}
+
+BOOST_AUTO_TEST_CASE(the_oscillator_is_known_along_its_way) {
+  const ReducedScene scene(drawn("oscillator", {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}));
+  const Reference made = make_reference(scene, 10, seconds);
+  const std::vector<double> times{0, 0.3, 1, 7.77, 10};
+  const ReferencePath path = path_of(scene, made, times, seconds);
+  BOOST_TEST_REQUIRE(path.states.size() == times.size());
+  const long double w = 2.5;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const long double t = times[i];
+    const double x = static_cast<double>(std::cos(w * t) - 3 / w * std::sin(w * t));
+    BOOST_TEST(path.states[i].t == times[i]);
+    BOOST_TEST(path.certified[i] < tight);
+    BOOST_TEST(std::abs(path.states[i].q[0] - x) <=
+               slack * path.certified[i] * made.scales.displacement);
+  }
+  BOOST_TEST(path.states.back().q == made.end.q);
+  BOOST_TEST(path.certified.back() == made.certified.position);
+  BOOST_CHECK_THROW(path_of(scene, made, times, 0), NoReference);
 }
 
 // The first step tried is a thousandth of the end, many periods here. Its stages grow by the

@@ -41,6 +41,17 @@ BOOST_AUTO_TEST_CASE(it_is_the_stiffness_of_springs) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(it_is_constant_where_that_of_the_system_is) {
+  std::mt19937 random(1);
+  Problem p = random_network(random, 2, 5, 1.1);
+  for (const bool is_linear : {false, true}) {
+    if (is_linear) p.network = without_rest_lengths(p.network);
+    const std::shared_ptr<const System> springs = make_mass_spring(p.network);
+    const DifferencedStiffness system(springs, pairs_of(springs->stiffness_pattern()));
+    BOOST_TEST(system.stiffness_is_constant() == is_linear);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(columns_without_a_common_row_share_a_force) {
   // A chain of n unknowns in which neighbours pull each other: three colours, however long.
   class Chain final : public System {

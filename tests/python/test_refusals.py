@@ -99,6 +99,7 @@ OF_RUNS = {
 }
 OF_SYSTEMS = {
     "force: it is neither a callable nor a C": dict(force=5),
+    "stiffness: it is neither a callable nor a matrix": dict(stiffness=5),
     "dimension 4": dict(dimension=4),
     r"mass: its shape is \(2, 3\)": dict(mass=np.ones((2, 3)), dimension=2),
     "mass: allowed are": dict(mass=[1.0, -1.0]),
@@ -226,7 +227,7 @@ class Refusals(unittest.TestCase):
         run, start = dict(RUN, until=1), dict(q0=[1.0, 1.0], v0=[1.0, 1.0])
         for call, sentence in {
             lambda: qddot.solve("cloth", **run): "neither a qddot.Scene nor a qddot.System",
-            lambda: qddot.energy_trend(system(), **run): "",
+            lambda: qddot.energy_trend("cloth", **run): "neither a qddot.Scene nor a qddot.System",
             lambda: solve_own(dict(potential=lambda q: "much")): "",
             lambda: qddot.equilibrium(system(), **start): "",
             lambda: qddot.modes(system(), **start): "",
@@ -359,6 +360,13 @@ class Meaning(Programs):
         table = problems.read_table("points.csv")
         self.assertTrue(np.array_equal(table["time_s"], chart.points["time_s"], equal_nan=True))
         chart.draw("chart.svg")
+        chart.draw("all.svg", everything=True)
+        # Pictures spell their option as here.
+        for name, words in (("chart.svg", "of 2 methods; everything=True shows"), ("all.svg", "")):
+            with open(name, encoding="utf-8") as file:
+                text = file.read()
+            self.assertIn(words, text)
+            self.assertNotIn("--all", text)
         with self.assertRaisesRegex(ValueError, "png"):
             chart.draw("chart.pdf")
         self.assertEqual(chart._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
@@ -381,12 +389,13 @@ class Meaning(Programs):
         scene = chain.scene()
         exact = qddot.reference(scene, 0.3)
         q, v = exact.q.copy(), exact.v
-        self.assertEqual(exact.errors(q, v).position, 0)
+        self.assertEqual(exact.errors(q, v, t=0.3).position, 0)
         q[2, 1] += 1e-3
         # Over the largest displacement of the motion, which the reference says.
         scale = float(exact.divided_by.split("node, ")[1].split(" m")[0])
-        self.assertAlmostEqual(exact.errors(q, v).position, 1e-3 / scale, delta=1e-2 * 1e-3 / scale)
+        error = exact.errors(q, v, t=0.3).position
+        self.assertAlmostEqual(error, 1e-3 / scale, delta=1e-2 * 1e-3 / scale)
         with self.assertRaisesRegex(ValueError, r"errors: q has the shape \(3, 2\)"):
-            exact.errors(q[:3], v)
+            exact.errors(q[:3], v, t=0.3)
         with self.assertRaisesRegex(ValueError, "ends at t = 0.2"):
             exact.errors(qddot.solve(scene, "verlet", step_size=1e-3, until=0.2))

@@ -13,8 +13,8 @@ from programs import Programs, write
 PACKAGE = os.path.dirname(qddot.__file__)
 # Members that pybind11 gives every class; the module's typed interface cannot name them.
 ALLOWED = r"""
-qddot\._qddot\.(Model|Reference|Scene)
-qddot\._qddot\.(Model|Reference|Scene)\.__init__
+qddot\._qddot\.(Drawn|Model|Reference|Scene)
+qddot\._qddot\.(Drawn|Model|Reference|Scene)\.__init__
 """
 USER = """
 import numpy as np
@@ -27,9 +27,13 @@ assert energy is not None
 total: float = float(energy.total[0]) + solution.counts.steps
 best = qddot.work_precision(scene, methods=["verlet"]).best(1e-4)
 name: str = best.method if best else ""
-system = qddot.System([1.0], lambda q, f: np.copyto(f, -q))
+system = qddot.System([1.0], lambda q, f: np.copyto(f, -q), stiffness=[[-1.0]], name="one")
+q, v = solution([0.05, 0.1])
+along = qddot.reference(scene, 0.1).errors_along(solution)
+worst: float = float(along.position.max()) + float(q[0, 0, 0]) + scene.potential(scene.positions)
 """
 MISUSE = USER + "solution.energie\n"
+MISSPELT = USER + "qddot.solve(scene, 'verlet', dt=1e-3)\n"
 
 
 @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
@@ -54,7 +58,7 @@ class Types(Programs):
         self.ends(0, "mypy", "--strict", *(os.path.join("qddot", f) for f in files))
 
     def test_users_are_told_by_their_checker(self):
-        for text, status in ((USER, 0), (MISUSE, 1)):
+        for text, status in ((USER, 0), (MISUSE, 1), (MISSPELT, 1)):
             self.ends(status, "mypy", "--strict", os.path.abspath(write("user.py", text)))
 
 

@@ -4,12 +4,19 @@
 #include <stdexcept>
 
 #include "qddot/algebra/dense_pairs.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 namespace {
 
-// sin(x)/x, continuous at x = 0.
-double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
+// A negative eigenvalue is a rounding error if it is no more than so many roundings of the largest
+// one for each unknown.
+constexpr double roundings_of_zero = 16;
+
+// sin(x)/x and cos x of a mode that vibrates, and sinh(x)/x and cosh x of one that grows; all are
+// continuous at x = 0.
+double sinc(bool grows, double x) { return x == 0 ? 1 : (grows ? std::sinh(x) : std::sin(x)) / x; }
+double cosine(bool grows, double x) { return grows ? std::cosh(x) : std::cos(x); }
 
 }  // namespace
 
@@ -25,7 +32,9 @@ LinearMotion::LinearMotion(const System& system)
   const SymmetricMatrix a = -(per_root.asDiagonal() * k * per_root.asDiagonal());
   const EigenPairs modes = dense_pairs(Eigen::MatrixXd(a));
   u_ = modes.vectors;
-  omega_ = modes.values.cwiseMax(0).cwiseSqrt();  // w^2 is negative by rounding only
+  const double least = roundings_of_zero * machine_epsilon * static_cast<double>(system.size()) *
+                       modes.values.lpNorm<Eigen::Infinity>();
+  squares_ = (modes.values.array() < 0 && modes.values.array() > -least).select(0, modes.values);
 }
 
 State LinearMotion::after(const State& from, double duration) const {
@@ -40,17 +49,18 @@ void LinearMotion::propagate(const State& from, double duration, State& to,
   auto& [f, velocity, push, y, rate] = scratch;
   const double t = duration;
   f.resize(from.q.size());
-  y.resize(omega_.size());
-  rate.resize(omega_.size());
+  y.resize(squares_.size());
+  rate.resize(squares_.size());
   system_.force(from.q, f);
   y = root_mass_.cwiseProduct(from.v);
   velocity.noalias() = u_.transpose() * y;  // y'(0)
   f = f.cwiseQuotient(root_mass_);
   push.noalias() = u_.transpose() * f;  // U'b
-  for (Index j = 0; j < omega_.size(); ++j) {
-    const double wt = omega_[j] * t, half = sinc(wt / 2);
-    y[j] = velocity[j] * t * sinc(wt) + push[j] * 0.5 * t * t * half * half;
-    rate[j] = velocity[j] * std::cos(wt) + push[j] * t * sinc(wt);
+  for (Index j = 0; j < squares_.size(); ++j) {
+    const bool grows = squares_[j] < 0;
+    const double wt = std::sqrt(std::abs(squares_[j])) * t, half = sinc(grows, wt / 2);
+    y[j] = velocity[j] * t * sinc(grows, wt) + push[j] * 0.5 * t * t * half * half;
+    rate[j] = velocity[j] * cosine(grows, wt) + push[j] * t * sinc(grows, wt);
   }
   to.t = from.t + t;
   to.q.noalias() = u_ * y;

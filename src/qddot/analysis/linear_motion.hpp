@@ -9,7 +9,9 @@ namespace qddot {
 //   z'' = -A z + b,  A = -M^-1/2 K M^-1/2 = U diag(w^2) U',  b = M^-1/2 f(q0),
 // and each mode y = U'z, with y(0) = 0, is
 //   y(t) = y'(0) sin(wt)/w + b (1 - cos wt)/w^2,
-// or y'(0) t + b t^2/2 if w = 0. There is no step and no step error, only the rounding of the dense
+// or y'(0) t + b t^2/2 if w = 0. Where V falls along a mode, w^2 = -s^2 is negative and
+//   y(t) = y'(0) sinh(st)/s + b (cosh st - 1)/s^2. There is no step and no step error, only the
+//   rounding of the dense
 // eigenproblem. That takes O(n^3) time once and n^2 memory; a motion is O(n^2). The system must
 // outlive it.
 class LinearMotion {
@@ -31,7 +33,7 @@ class LinearMotion {
   const System& system_;
   Vec root_mass_;      // M^1/2
   Eigen::MatrixXd u_;  // modes, one in each column
-  Vec omega_;          // [rad/s]
+  Vec squares_;        // w^2 [rad^2/s^2]
 };
 
 }  // namespace qddot

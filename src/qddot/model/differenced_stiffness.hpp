@@ -26,6 +26,7 @@ class DifferencedStiffness final : public System {
   void force(const ConstVec& q, MutableVec f) const override { system_->force(q, f); }
   void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
 
   // The number of forces that one K costs.
   Index forces_per_stiffness() const { return 2 * static_cast<Index>(columns_of_.size()); }

@@ -16,6 +16,8 @@ namespace qddot::inline measure {
 class Momenta {
  public:
   explicit Momenta(const Scene& scene);
+  // None: those of forces of which nothing is known.
+  Momenta() = default;
 
   bool has_linear() const { return !linear_axes_.empty(); }
   bool has_angular() const { return !angular_axes_.empty(); }
@@ -39,7 +41,7 @@ class Momenta {
   Eigen::Vector3d centre_velocity(const std::vector<Node>& nodes) const;
 
   std::vector<Eigen::Vector3d> linear_axes_, angular_axes_;
-  Eigen::Vector3d gravity_, pin_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero(), pin_ = Eigen::Vector3d::Zero();
   double mass_ = 0, extent_ = 1;
 };
 

@@ -21,9 +21,9 @@ constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few sec
 
 // Throws NoReference if no step resolves the motion, or if `steps` steps of order 8 would take more
 // than twice `seconds`, estimated from a few steps. Calls `expect` if the reference is likely to
-// take all its time.
+// take all its time. `allowed`: that of the whole reference [s].
 void require_affordable(const ReducedScene& scene, double until, double steps, double seconds,
-                        const Expect& expect) {
+                        double allowed, const Expect& expect) {
   constexpr double tried = 16, refinements = 8;
   State state = scene.initial();
   const double h = until / steps;
@@ -42,8 +42,9 @@ void require_affordable(const ReducedScene& scene, double until, double steps, d
     throw NoReference(
         fmt::format("no reference: to t = {:g} s it takes {:.2g} steps of order 8 at the least, "
                     "about {}, and {} "
-                    "are allowed: ask for an earlier end (--until)",
-                    until, steps, duration_in_words(expected), duration_in_words(seconds)));
+                    "are allowed in all: ask for an earlier end (--until)",
+                    until, steps, duration_in_words(expected), duration_in_words(allowed)),
+        true);
   }
   if (expect && expected * refinements > seconds) expect(std::max(4 * seconds, 60.0));
 }
@@ -51,13 +52,14 @@ void require_affordable(const ReducedScene& scene, double until, double steps, d
 // A composition, refined as far as possible, and the effect of a rounding of its start.
 class Composed {
  public:
-  Composed(const ReducedScene& scene, double until, double seconds, double longest_rounding,
+  // In about `seconds`, of those that are allowed for the whole reference.
+  Composed(const ReducedScene& scene, double until, double seconds, double allowed,
            const Expect& expect)
-      : scene_(scene), until_(until), longest_rounding_(longest_rounding) {
+      : scene_(scene), until_(until), longest_rounding_(allowed) {
     // The steps resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
     const double bound = frequency_bound(scene.system(), scene.initial().q);
     const double coarsest = std::max(16.0, std::ceil(until * bound / 2));
-    require_affordable(scene, until, coarsest, seconds, expect);
+    require_affordable(scene, until, coarsest, seconds, allowed, expect);
     finest_ = refined(
         scene, seconds,
         [&](int level) {
@@ -119,6 +121,7 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
   } else {
     reference = joined(scene, finest, best_fehlberg(scene, until, composed, 0.4 * seconds), effect);
   }
+  reference.step_size = finest.knob;
   composed.rounding().tell(reference);
   reference.is_reduced_by_symmetry = is_reduced_by_symmetry(scene);
   if (start && reference.is_reduced_by_symmetry)

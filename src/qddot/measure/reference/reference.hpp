@@ -14,7 +14,14 @@ namespace qddot::inline measure {
 // The high-accuracy methods did not reach the end.
 class NoReference : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit NoReference(const std::string& why, bool needs_time = false)
+      : std::runtime_error(why), needs_time_(needs_time) {}
+
+  // Whether more time might make one.
+  bool needs_time() const { return needs_time_; }
+
+ private:
+  bool needs_time_;
 };
 
 // The effect of a push by one rounding on a motion that was computed in a plane, on a line or with
@@ -52,7 +59,9 @@ struct Reference {
   Vec modal_shares{};
   double modal_shares_floor = 0;
   std::string made_by;  // the two methods, with their options
-  double seconds = 0;   // time to make it [s]
+  // The steps [s] of Kahan and Li's composition in it; 0 if it has none.
+  double step_size = 0;
+  double seconds = 0;  // time to make it [s]
 
   // Whether the motion at the end exists in exact symmetry alone: any push out of symmetry has
   // moved the nodes apart before the end, in less than 0.8 of the motion's own horizon. The

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
@@ -49,7 +50,12 @@ Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
     if (next) best = std::move(next);
     if (before == 0 || seconds_since(start) + 2 * seconds_since(begin) > seconds) break;
   }
-  if (!best) throw NoReference("no reference: the high-accuracy methods did not reach the end");
+  if (!best) {
+    const bool needs_time = seconds_since(start) >= seconds;
+    throw NoReference(std::string("no reference: the high-accuracy methods did not reach the end") +
+                          (needs_time ? " in time: ask for an earlier end (--until)" : ""),
+                      needs_time);
+  }
   best->change = {share * last.position, share * last.velocity, share * last.energy};
   return *best;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -173,9 +174,14 @@ std::string verdict(const DriftRun& run, double until) {
 
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
                       double until, double seconds) {
+  return energy_trend(std::make_shared<const ReducedScene>(reduced_for(method, scene)),
+                      Momenta(scene), method, options, until, seconds);
+}
+
+DriftRun energy_trend(std::shared_ptr<const ReducedScene> model, const Momenta& momenta,
+                      const Method& method, const Options& options, double until, double seconds) {
   constexpr double looks = 1e5;
-  const Simulation run(scene, method, options);
-  const Momenta momenta(scene);
+  const Simulation run(std::move(model), method, options);
   const double step = options.step_size > 0 ? options.step_size : until / looks;
   return run_drift(method, run.options(), run.model(), momenta,
                    motion_scales(run.model(), momenta, until), {step, until, seconds});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -52,5 +53,10 @@ std::string verdict(const DriftRun& run, double until);
 // does.
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
                       double until, double seconds = 60);
+// The same for a model that others share, as one of the caller's own forces is, with the momenta
+// that are known to be conserved. It needs V, and K only if the method does.
+DriftRun energy_trend(std::shared_ptr<const ReducedScene> model, const Momenta& momenta,
+                      const Method& method, const Options& options, double until,
+                      double seconds = 60);
 
 }  // namespace qddot::inline measure

@@ -75,19 +75,22 @@ MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, do
   Look look(scene, momenta, scales);
   look.at(scene.initial());
 
-  const double w = fastest_frequency(scene);
+  const bool has_k = scene.system().has_stiffness();
+  const double w = has_k ? fastest_frequency(scene) : 0;
   const double h = w > 0 ? std::min(resolution / w, until) : until / most_steps;
   const int steps = static_cast<int>(std::min<double>(most_steps, until / h));
   // At every step: no vibration is in step with that.
   Observer observer{{}, [&](const State& state) { look.at(state); }};
   for (int k = 1; k <= steps; ++k) observer.times.push_back(k * h);
   const bool is_massless = scene.system().has_massless();
-  const Method& method = *find_method(is_massless ? "ida" : "blanes_moan4");
+  const Method& method = *find_method(is_massless ? "ida" : has_k ? "blanes_moan4" : "dprkn8");
+  const double knob = method.knob == Knob::rtol ? fine_rtol : h;
   State state = scene.initial();
   const Deadline deadline(longest_run);
-  make_integrator(method, scene.system(), options_for(method, is_massless ? fine_rtol : h, scene))
+  make_integrator(method, scene.system(), options_for(method, knob, scene))
       ->advance(state, steps * h, observer, deadline.token());
   look.finish();
+  if (!has_k) return scales;
 
   const Equilibrium rest = equilibrium_of(scene);
   if (rest.outcome == Equilibrium::Outcome::reached) {

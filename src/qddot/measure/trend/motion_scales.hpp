@@ -20,7 +20,9 @@ struct MotionScales {
 double fastest_frequency(const ReducedScene& scene);
 
 // Measures the scales in a run of 20 000 steps at h w_max = 1/2, or to `until` [s] if that is
-// earlier. The method is Blanes and Moan's of order 4, or IDA if nodes are massless.
+// earlier. The method is Blanes and Moan's of order 4, or IDA if nodes are massless. A system
+// without K has no known w_max: it is run to `until` by an adaptive method, and its excess is not
+// looked for.
 MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until);
 
 }  // namespace qddot::inline measure
