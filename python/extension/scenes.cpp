@@ -249,7 +249,7 @@ void add_scenes(py::module_& module) {
   };
   of_nodes("positions", &Node::position);
   of_nodes("velocities", &Node::velocity);
-  of_nodes("load", &Node::load);
+  of_nodes("loads", &Node::load);
   has("gravity", [](const Scene& s) { return array_of(Vec(s.gravity.head(s.dimension))); });
   has("mass", [](const Scene& s) {
     return column<double>(s.nodes, [](const Node& node) { return node.mass; });

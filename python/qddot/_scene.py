@@ -195,10 +195,10 @@ class Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh, .ply, .stl): every edge is a spring at
         its rest length. Masses come from node_mass or total_mass [kg], or from density: [kg/m^3] of
         a mesh with volume, [kg/m^2] of a surface. `weld`: the distance [m] within which vertices
-        become one. `rotation`: the axis to turn about, with the angle in degrees as its length; then
-        `shift` [m] is added. `velocity` [m/s]: of all nodes at the start. `pins`: the nodes that are fixed, each entry a box
-        (min, max), the name or tag of a group, or an array of nodes. `loads`: pairs of such nodes
-        and the force on each of them [N]."""
+        become one. `rotation`: the axis to turn about, with the angle in degrees as its length;
+        then `shift` [m] is added. `velocity` [m/s]: of all nodes at the start. `pins`: the nodes
+        that are fixed, each entry a box (min, max), the name or tag of a group, or an array of
+        nodes. `loads`: pairs of such nodes and the force on each of them [N]."""
         path = os.path.abspath(os.fspath(file))
         stem = os.path.splitext(os.path.basename(path))[0]
         lines = [f"name = {_quoted(stem)}"]
@@ -240,7 +240,7 @@ class Scene:
     velocities: Floats = _of_handle("velocities", "(nodes, dimension) [m/s].")
     mass: Floats = _of_handle("mass", "(nodes) [kg].")
     pinned: NDArray[np.bool_] = _of_handle("pinned", "(nodes), whether each is fixed.")
-    load: Floats = _of_handle("load", "(nodes, dimension) [N], constant.")
+    loads: Floats = _of_handle("loads", "(nodes, dimension) [N], constant.")
     gravity: Floats = _of_handle("gravity", "(dimension) [m/s^2].")
     springs: NDArray[np.int64] = _of_handle("springs", "(springs, 2), the nodes of each.")
     stiffness: Floats = _of_handle("stiffness", "(springs) [N/m].")
@@ -250,13 +250,14 @@ class Scene:
     def replace(self, **changes: Any) -> Scene:
         """The same scene with these arguments of Scene() replaced."""
         names = (
-            "positions springs stiffness mass pinned gravity velocities load rest_length quartic name "
-            "until stiff_above starts_at_equilibrium"
+            "positions springs stiffness mass pinned gravity velocities load rest_length quartic "
+            "name until stiff_above starts_at_equilibrium"
         ).split()
         for name in changes:
             if name not in names:
                 raise ValueError(f"replace: {name} is none of {', '.join(names)}")
-        return Scene(**{**{name: getattr(self, name) for name in names}, **changes})
+        own = {name: getattr(self, "loads" if name == "load" else name) for name in names}
+        return Scene(**{**own, **changes})
 
     def to_toml(self) -> str:
         """The text of a scene file that gives the same scene to the last bit."""
