@@ -27,6 +27,7 @@ class Bullet final : public Peer {
 
   std::vector<ForceKind> forces() const override { return {ForceKind::its_own}; }
   std::string misfit(const Scene& scene) const override {
+    if (has_loads(scene)) return "its soft bodies have no constant loads of nodes";
     return has_quartic(scene) ? "its links have no quartic stiffness" : "";
   }
   std::vector<double> values(const Problem& problem) const override {

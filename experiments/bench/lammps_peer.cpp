@@ -249,6 +249,7 @@ class Lammps final : public Peer {
   std::vector<ForceKind> forces() const override { return {ForceKind::its_own}; }
   std::string twin() const override { return "verlet"; }
   std::string misfit(const Scene& scene) const override {
+    if (has_loads(scene)) return "its input has no loads of single nodes";
     return has_quartic(scene) ? "its harmonic bonds have no quartic stiffness" : "";
   }
   std::vector<double> values(const Problem& problem) const override {

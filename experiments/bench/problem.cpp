@@ -65,11 +65,13 @@ double Problem::error(const State& end) const {
 
 PlainForce::PlainForce(const Scene& scene) : dimension_(scene.dimension), gravity_(scene.gravity) {
   constexpr int none = -1;
+  const bool is_loaded = has_loads(scene);
   std::vector<int> place(scene.nodes.size(), none);
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     if (scene.nodes[i].pinned) continue;
     place[i] = static_cast<int>(mass_.size());
     mass_.push_back(scene.nodes[i].mass);
+    if (is_loaded) load_.push_back(scene.nodes[i].load);
   }
   for (const Spring& spring : scene.springs) {
     const auto [a, b] = spring.nodes;
@@ -90,6 +92,7 @@ void PlainForce::sum(const double* q, double* f) const {
   const auto at = [f](int i) { return Eigen::Map<Vector>(f + D * i); };
   const Vector gravity = gravity_.head<D>();
   for (std::size_t i = 0; i < mass_.size(); ++i) at(static_cast<int>(i)) = mass_[i] * gravity;
+  for (std::size_t i = 0; i < load_.size(); ++i) at(static_cast<int>(i)) += load_[i].head<D>();
   for (const Link& link : links_) {
     const Vector d = x(link.j) - x(link.i);
     const double l = d.norm();

@@ -85,6 +85,7 @@ class PlainForce {
   int dimension_;
   Eigen::Vector3d gravity_;
   std::vector<double> mass_;
+  std::vector<Eigen::Vector3d> load_;  // empty if there is none
   std::vector<Link> links_;
   std::vector<Anchor> anchors_;
 };

@@ -27,7 +27,8 @@ nlohmann::json as_json(const Problem& problem) {
                          {"gravity", scene.gravity},
                          {"q", initial.q},
                          {"v", initial.v}};
-  for (const char* list : {"mass", "points", "from", "to", "stiffness", "rest_length", "quartic"}) {
+  for (const char* list :
+       {"mass", "load", "points", "from", "to", "stiffness", "rest_length", "quartic"}) {
     json[list] = nlohmann::json::array();
   }
   std::vector<std::size_t> place(scene.nodes.size());
@@ -38,8 +39,12 @@ nlohmann::json as_json(const Problem& problem) {
       if (node.pinned != pinned) continue;
       place[i] = next++;
       if (!pinned) json["mass"].push_back(node.mass);
-      for (int d = 0; pinned && d < scene.dimension; ++d)
-        json["points"].push_back(node.position[d]);
+      for (int d = 0; d < scene.dimension; ++d) {
+        if (pinned)
+          json["points"].push_back(node.position[d]);
+        else
+          json["load"].push_back(node.load[d]);
+      }
     }
   }
   for (const Spring& spring : scene.springs) {

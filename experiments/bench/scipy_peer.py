@@ -26,7 +26,8 @@ class Problem:
         self.dimension = data["dimension"]
         self.mass = np.array(data["mass"])
         self.nodes = len(self.mass)
-        self.gravity = np.array(data["gravity"])[: self.dimension]
+        gravity = np.array(data["gravity"])[: self.dimension]
+        load = np.array(data["load"]).reshape(self.nodes, self.dimension)
         self.stiffness = np.array(data["stiffness"])
         self.rest_length = np.array(data["rest_length"])
         self.quartic = np.array(data["quartic"])
@@ -43,6 +44,7 @@ class Problem:
         self.offset = incidence[:, self.nodes :] @ self.points
         self.gather = (-self.difference.T).tocsr()
         self.per_mass = (1 / self.mass)[:, None]
+        self.free_fall = gravity + load * self.per_mass
 
     def acceleration(self, q):
         """M^-1 f(q)."""
@@ -52,7 +54,7 @@ class Problem:
         tension = s * (self.stiffness + self.quartic * s * s)
         pull = d * (tension / np.where(l > 0, l, 1))[:, None]
         # The force on a spring's first end is its pull: minus what the incidence matrix says.
-        return ((self.gather @ pull) * self.per_mass + self.gravity).ravel()
+        return ((self.gather @ pull) * self.per_mass + self.free_fall).ravel()
 
     def jacobian(self, q):
         """[[0, I], [M^-1 K, 0]] as compressed columns, its pattern with duplicates summed."""

@@ -46,7 +46,7 @@ class PlainModel {
  public:
   using Vector = std::vector<Real>;
 
-  explicit PlainModel(const Scene& scene) : scene_(scene) {
+  explicit PlainModel(const Scene& scene) : scene_(scene), has_loads_(has_loads(scene)) {
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
       if (!scene.nodes[i].pinned && scene.nodes[i].mass == 0) massless_.push_back(i);
     }
@@ -58,8 +58,8 @@ class PlainModel {
   Vector positions() const { return plain_positions<Real>(scene_); }
   Vector velocities() const { return plain_velocities<Real>(scene_); }
 
-  // f = -dV/dx [N] of springs alone.
-  void spring_forces(const Vector& x, Vector& f) const {
+  // f = -dV/dx [N] of springs and loads, without weights.
+  void forces_without_weights(const Vector& x, Vector& f) const {
     f.assign(x.size(), 0);
     for (const Spring& spring : scene_.springs) {
       const auto [i, j] = spring.nodes;
@@ -72,11 +72,16 @@ class PlainModel {
         f[3 * j + c] -= pull * d[c];
       }
     }
+    if (!has_loads_) return;
+    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+      const Eigen::Vector3d load = scene_.nodes[i].acting_load();
+      for (std::size_t c = 0; c < 3; ++c) f[3 * i + c] += load[static_cast<Eigen::Index>(c)];
+    }
   }
 
   // a = f/m + g [m/s^2] of nodes with mass; zero for all others.
   void acceleration(const Vector& x, Vector& a) const {
-    spring_forces(x, a);
+    forces_without_weights(x, a);
     for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
       const Node& node = scene_.nodes[i];
       const bool moves = !node.pinned && node.mass > 0;
@@ -88,7 +93,7 @@ class PlainModel {
     }
   }
 
-  // 1/2 v'Mv + V [J]; weights of pinned nodes do not count.
+  // 1/2 v'Mv + V [J]; weights and loads of pinned nodes do not count.
   Real energy(const Vector& x, const Vector& v) const {
     Real sum = 0;
     for (const Spring& spring : scene_.springs) {
@@ -102,6 +107,7 @@ class PlainModel {
       for (std::size_t c = 0; c < 3; ++c) {
         const Real g = scene_.gravity[static_cast<Eigen::Index>(c)], w = v[3 * i + c];
         sum += Real(node.mass) * (w * w / 2 - g * x[3 * i + c]);
+        sum -= Real(node.load[static_cast<Eigen::Index>(c)]) * x[3 * i + c];
       }
     }
     return sum;
@@ -127,12 +133,13 @@ class PlainModel {
   }
 
   Scene scene_;
+  bool has_loads_;
   std::vector<std::size_t> massless_;
 };
 
 // Newton's iteration on -K d = f over the coordinates of the massless nodes in the scene's
 // dimension, by Cholesky's factorisation without blocks. If a pivot is not positive, the place is
-// no minimum. Steps are halved while they do not lower the potential of the springs.
+// no minimum. Steps are halved while they do not lower the potential.
 template <class Real>
 bool PlainModel<Real>::place_massless(Vector& x) const {
   if (massless_.empty()) return true;
@@ -145,7 +152,7 @@ bool PlainModel<Real>::place_massless(Vector& x) const {
   const Vector still(x.size(), 0);
   Real least_residual = -1;
   for (int iteration = 0; iteration < 100; ++iteration) {
-    spring_forces(x, f);
+    forces_without_weights(x, f);
     std::fill(k.begin(), k.end(), Real(0));
     Real largest_entry = 0;
     for (const Spring& spring : scene_.springs) {

@@ -26,7 +26,8 @@ Eigen::MatrixXd matrix_of(const Doubles& array, const char* name) {
 
 Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles& mass,
                  const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                 const Given& velocities, const Given& rest_length, const Given& quartic) {
+                 const Given& velocities, const Given& load, const Given& rest_length,
+                 const Given& quartic) {
   SceneArrays a;
   const auto node = [](std::int64_t number, const char* name) {
     if (number >= 0) return static_cast<std::size_t>(number);
@@ -46,6 +47,7 @@ Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles
     a.pinned.push_back(node(pinned.data()[i], "pinned"));
   if (gravity) a.gravity = vec_of(*gravity);
   if (velocities) a.velocities = matrix_of(*velocities, "velocities");
+  if (load) a.load = matrix_of(*load, "load");
   if (rest_length) a.rest_length = vec_of(*rest_length);
   if (quartic) a.quartic = vec_of(*quartic);
   return scene_of(a);
@@ -223,11 +225,11 @@ void add_scenes(py::module_& module) {
   scene.def_static("from_arrays",
                    [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
                        const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                       const Given& velocities, const Given& rest_length, const Given& quartic,
-                       const std::string& name, std::optional<double> until,
+                       const Given& velocities, const Given& load, const Given& rest_length,
+                       const Given& quartic, const std::string& name, std::optional<double> until,
                        std::optional<double> stiff_above, bool starts_at_equilibrium) {
                      Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
-                                             velocities, rest_length, quartic);
+                                             velocities, load, rest_length, quartic);
                      made.name = name;
                      made.until = until;
                      made.stiff_above = stiff_above;
@@ -255,6 +257,7 @@ void add_scenes(py::module_& module) {
   };
   of_nodes("positions", &Node::position);
   of_nodes("velocities", &Node::velocity);
+  of_nodes("loads", &Node::load);
   has("gravity", [](const Scene& s) { return array_of(Vec(s.gravity.head(s.dimension))); });
   has("mass", [](const Scene& s) {
     return column<double>(s.nodes, [](const Node& node) { return node.mass; });

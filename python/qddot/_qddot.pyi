@@ -29,6 +29,7 @@ class Scene:
         pinned: _Whole,
         gravity: _Floats | None,
         velocities: _Floats | None,
+        load: _Floats | None,
         rest_length: _Floats | None,
         quartic: _Floats | None,
         name: str,
@@ -56,6 +57,8 @@ class Scene:
     def positions(self) -> _Floats: ...
     @property
     def velocities(self) -> _Floats: ...
+    @property
+    def loads(self) -> _Floats: ...
     @property
     def gravity(self) -> _Floats: ...
     @property

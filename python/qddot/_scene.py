@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -54,6 +54,21 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
+# Nodes of a mesh: a box (min, max), the name or tag of a group, or an array of nodes.
+Chosen = Union[Tuple[Sequence[float], Sequence[float]], str, int, NDArray[np.int64]]
+
+
+def _choice(chosen: Chosen) -> list[str]:
+    if isinstance(chosen, str):
+        return [f"group = {_quoted(chosen)}"]
+    if isinstance(chosen, (int, np.integer)):
+        return [f"group = {int(chosen)}"]
+    if isinstance(chosen, np.ndarray) and chosen.ndim == 1:
+        return [f"nodes = {whole_numbers(chosen, 'nodes').tolist()}"]
+    low, high = chosen
+    return [f"min = {_list(low)}", f"max = {_list(high)}"]
+
+
 def _of_handle(name: str, doc: str) -> Any:
     """A read-only property of a scene; arrays are read-only, too."""
 
@@ -71,9 +86,10 @@ class Scene:
     each, from 0. stiffness [N/m], rest_length [m] (default: as drawn) and quartic [N/m^3] (default:
     none): of each spring, or one for all. mass [kg]: of each node, or one for all; 0 is massless.
     pinned: the fixed nodes, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
-    positions [m/s]. until [s]: the default end time of runs. stiff_above [N/m]: stiffer springs are
-    the stiff ones for methods that separate these. starts_at_equilibrium: whether the motion begins
-    at rest, downhill from the positions. Raises InvalidInput, with one sentence, for wrong input.
+    positions [m/s]. load: constant forces on the nodes, as positions [N]. until [s]: the default
+    end time of runs. stiff_above [N/m]: stiffer springs are the stiff ones for methods that
+    separate these. starts_at_equilibrium: whether the motion begins at rest, downhill from the
+    positions. Raises InvalidInput, with one sentence, for wrong input.
     """
 
     _handle: _qddot.Scene
@@ -92,6 +108,7 @@ class Scene:
         pinned: ArrayLike = (),
         gravity: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
+        load: ArrayLike | None = None,
         rest_length: ArrayLike | None = None,
         quartic: ArrayLike | None = None,
         name: str = "scene",
@@ -100,11 +117,12 @@ class Scene:
         starts_at_equilibrium: bool = False,
     ) -> None:
         places = floats(positions, "positions")
-        if velocities is not None and np.shape(velocities) != places.shape:
-            raise ValueError(
-                f"velocities: their shape is {np.shape(velocities)}; allowed is that of "
-                f"the positions, {places.shape}"
-            )
+        for what, given in (("velocities", velocities), ("load", load)):
+            if given is not None and np.shape(given) != places.shape:
+                raise ValueError(
+                    f"{what}: their shape is {np.shape(given)}; allowed is that of "
+                    f"the positions, {places.shape}"
+                )
         held = np.asarray(pinned)
         if held.dtype == bool:
             if held.shape != places.shape[:1]:
@@ -127,6 +145,7 @@ class Scene:
                 held,
                 None if gravity is None else floats(gravity, "gravity"),
                 None if velocities is None else floats(velocities, "velocities"),
+                None if load is None else floats(load, "load"),
                 None if rest_length is None else floats(rest_length, "rest_length", one=True),
                 None if quartic is None else floats(quartic, "quartic", one=True),
                 str(name),
@@ -167,20 +186,25 @@ class Scene:
         stiffness: float,
         node_mass: float | None = None,
         total_mass: float | None = None,
+        density: float | None = None,
         bending_stiffness: float | None = None,
         scale: float | None = None,
         weld: float | None = None,
         rotation: Sequence[float] | None = None,
         shift: Sequence[float] | None = None,
         velocity: Sequence[float] | None = None,
-        pins: Sequence[tuple[Sequence[float], Sequence[float]]] = (),
+        pins: Sequence[Chosen] = (),
+        loads: Sequence[tuple[Chosen, Sequence[float]]] = (),
         gravity: Sequence[float] | None = None,
         until: float | None = None,
     ) -> Scene:
-        """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh): every edge is a spring at its rest
-        length. `weld`: the distance [m] within which vertices become one. `rotation`: the axis to
-        turn about, with the angle in degrees as its length; then `shift` [m] is added. `velocity`
-        [m/s]: of all nodes at the start. `pins`: boxes (min, max) whose nodes are fixed."""
+        """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh, .ply, .stl): every edge is a spring at
+        its rest length. Masses come from node_mass or total_mass [kg], or from density: [kg/m^3] of
+        a mesh with volume, [kg/m^2] of a surface. `weld`: the distance [m] within which vertices
+        become one. `rotation`: the axis to turn about, with the angle in degrees as its length;
+        then `shift` [m] is added. `velocity` [m/s]: of all nodes at the start. `pins`: the nodes
+        that are fixed, each entry a box (min, max), the name or tag of a group, or an array of
+        nodes. `loads`: pairs of such nodes and the force on each of them [N]."""
         path = os.path.abspath(os.fspath(file))
         stem = os.path.splitext(os.path.basename(path))[0]
         lines = [f"name = {_quoted(stem)}"]
@@ -193,6 +217,7 @@ class Scene:
             stiffness=stiffness,
             node_mass=node_mass,
             total_mass=total_mass,
+            density=density,
             bending_stiffness=bending_stiffness,
             scale=scale,
             weld=weld,
@@ -200,8 +225,10 @@ class Scene:
         lines += [f"{name} = {float(x)!r}" for name, x in numbers.items() if x is not None]
         vectors = dict(rotation=rotation, shift=shift, velocity=velocity)
         lines += [f"{name} = {_list(x)}" for name, x in vectors.items() if x is not None]
-        for low, high in pins:
-            lines += ["[[mesh.pin]]", f"min = {_list(low)}", f"max = {_list(high)}"]
+        for chosen in pins:
+            lines += ["[[mesh.pin]]", *_choice(chosen)]
+        for chosen, force in loads:
+            lines += ["[[mesh.load]]", *_choice(chosen), f"force = {_list(force)}"]
         text = "\n".join(lines) + "\n"
         return cls._of(_qddot.Scene.parse(text, path, os.path.dirname(path)))
 
@@ -219,6 +246,7 @@ class Scene:
     velocities: Floats = _of_handle("velocities", "(nodes, dimension) [m/s].")
     mass: Floats = _of_handle("mass", "(nodes) [kg].")
     pinned: NDArray[np.bool_] = _of_handle("pinned", "(nodes), whether each is fixed.")
+    loads: Floats = _of_handle("loads", "(nodes, dimension) [N], constant.")
     gravity: Floats = _of_handle("gravity", "(dimension) [m/s^2].")
     springs: NDArray[np.int64] = _of_handle("springs", "(springs, 2), the nodes of each.")
     stiffness: Floats = _of_handle("stiffness", "(springs) [N/m].")
@@ -228,15 +256,16 @@ class Scene:
     def replace(self, **changes: Any) -> Scene:
         """The same scene with these arguments of Scene() replaced."""
         names = (
-            "positions springs stiffness mass pinned gravity velocities rest_length quartic name "
-            "until stiff_above starts_at_equilibrium"
+            "positions springs stiffness mass pinned gravity velocities load rest_length quartic "
+            "name until stiff_above starts_at_equilibrium"
         ).split()
         for name in changes:
             if name not in names:
                 raise ValueError(
                     f"replace: {name} is none of {', '.join(names)}{hint(name, names)}"
                 )
-        return Scene(**{**{name: getattr(self, name) for name in names}, **changes})
+        own = {name: getattr(self, "loads" if name == "load" else name) for name in names}
+        return Scene(**{**own, **changes})
 
     def to_toml(self) -> str:
         """The text of a scene file that gives the same scene to the last bit."""

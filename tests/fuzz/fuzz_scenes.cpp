@@ -80,7 +80,8 @@ class Mutator {
       "pinned = true\n|quartic = 1\n|rest_length = 0.5\n|start = \"equilibrium\"\n|"
       "bending_stiffness = 1\n|dimension = 1\n|[]|{}|\"\"\"|'''|\\u0000|\\n|\\UFFFFFFFF|\r\n|#|=|"
       "$Nodes\n|$EndNodes\n|$Elements\n|$EndElements\n|4.1|2.2|Vertices|Triangles|Dimension 2\n|"
-      "f 1 2 3\n|v 1 2 3\n";
+      "f 1 2 3\n|v 1 2 3\n|load = [1, 0, 0]\n|[[mesh.load]]\n|group = 3\n|density = 2\n|"
+      "property list uchar int vertex_indices\n|element face 2\n|facet normal 0 0 1\n";
   static constexpr std::string_view not_text =
       "\xff|\x80|\xc3\x28|\xed\xa0\x80|\xf8\x88\x80\x80\x80|\xef\xbb\xbf|\xc2\x85|\xf4\x90\x80\x80";
   static constexpr std::string_view nestings = "[|{a=|a.|[[|[a.|{a.b=";
@@ -248,7 +249,8 @@ void show_input_at_death() {
 
 constexpr SceneLimits limits{.nodes = 100, .springs = 300};
 
-// A scene file, or one that takes all that a mesh has. Both name their meshes.
+// A scene file, or one that takes all that a mesh has; that bends, and has masses of its density.
+// Both name their meshes.
 Scene read(const std::string& name, bool bends) {
   const bool is_scene = name.ends_with(".toml");
   const auto source = [&](const std::string& file) {
@@ -259,9 +261,9 @@ Scene read(const std::string& name, bool bends) {
     return found->second;
   };
   const std::string around_mesh = fmt::format(
-      "[mesh]\nfile = '{}'\nstiffness = 3\nnode_mass = 2\nbending_stiffness = {}\n"
+      "[mesh]\nfile = '{}'\nstiffness = 3\n{} = 2\nbending_stiffness = {}\n"
       "pin = [{{min = [0, 0, 0], max = [1, 0.5, 0]}}]\n",
-      name, bends ? 1.5 : 0);
+      name, bends ? "density" : "node_mass", bends ? 1.5 : 0);
   return parse_scene(is_scene ? input : around_mesh, "fuzz.toml", "", limits, source);
 }
 

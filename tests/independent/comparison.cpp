@@ -58,7 +58,7 @@ struct PlainEnergies {
   long double kinetic = 0, potential = 0;  // [J]
   // The factors by which rounding of coordinates enters the potential and a force.
   long double potential_size = 0, force_size = 0;
-  std::vector<long double> force{};  // on free nodes, weights included
+  std::vector<long double> force{};  // on free nodes, weights and loads included
 };
 
 PlainEnergies plain_energies(const PlainModel<long double>& model, const std::vector<Node>& nodes) {
@@ -68,7 +68,7 @@ PlainEnergies plain_energies(const PlainModel<long double>& model, const std::ve
     v.insert(v.end(), node.velocity.begin(), node.velocity.end());
   }
   PlainEnergies plain;
-  model.spring_forces(x, plain.force);
+  model.forces_without_weights(x, plain.force);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Node& node = model.scene().nodes[i];
     for (std::size_t c = 0; c < 3; ++c) {
@@ -76,9 +76,12 @@ PlainEnergies plain_energies(const PlainModel<long double>& model, const std::ve
           node.pinned ? 0 : node.mass * model.scene().gravity[static_cast<Eigen::Index>(c)];
       if (node.pinned) plain.force[3 * i + c] = 0;
       if (!node.pinned) plain.kinetic += 0.5L * node.mass * v[3 * i + c] * v[3 * i + c];
-      plain.potential_size += std::abs(weight * x[3 * i + c]);
+      const double load = node.acting_load()[static_cast<Eigen::Index>(c)];
       plain.force[3 * i + c] += weight;
-      plain.force_size += std::abs(weight);
+      for (const long double own : {weight, static_cast<long double>(load)}) {
+        plain.potential_size += std::abs(own * x[3 * i + c]);
+        plain.force_size += std::abs(own);
+      }
     }
   }
   plain.potential = model.energy(x, std::vector<long double>(v.size(), 0));
@@ -122,17 +125,17 @@ void compare_state(const ReducedScene& reduced, const PlainModel<long double>& m
   reduced.system().force(state.q, f);
   const auto fast = reduced.expand({state.t, state.q, w});
   const auto still = reduced.expand({state.t, state.q, Vec::Zero(n)});
-  // Nodes of a part have no weight in the frame that falls with it.
-  std::vector<bool> has_weight(nodes.size(), true);
+  // Seen from the frame that falls with a part, its nodes lack the force of that fall.
+  std::vector<Eigen::Vector3d> fall(nodes.size(), Eigen::Vector3d::Zero());
   for (const qddot::reduce::Part& part : reduced.parts()) {
-    for (const std::size_t node : part.nodes()) has_weight[node] = !part.fall().moves();
+    for (const std::size_t node : part.nodes()) fall[node] = part.fall().gravity;
   }
   long double power = 0, fastest = w.norm();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const long double own = fast[i].velocity[c] - still[i].velocity[c];
-      const long double weight = has_weight[i] ? 0 : nodes[i].mass * model.scene().gravity[c];
-      power += (plain.force[3 * i + static_cast<std::size_t>(c)] - weight) * own;
+      const long double of_fall = static_cast<long double>(nodes[i].mass) * fall[i][c];
+      power += (plain.force[3 * i + static_cast<std::size_t>(c)] - of_fall) * own;
       fastest = std::max(fastest, std::abs(own));
     }
   }

@@ -90,8 +90,17 @@ void pin_some(Scene& scene, Chance& chance, double probability) {
   if (std::ranges::all_of(scene.nodes, &Node::pinned)) scene.nodes.back().pinned = false;
 }
 
+void load_some(Scene& scene, Chance& chance) {
+  if (!chance.is(0.4)) return;
+  const double share = chance.uniform(0.1, 1);
+  for (Node& node : scene.nodes) {
+    if (chance.is(share)) node.load = chance.vector(scene.dimension, 0.3);
+  }
+}
+
 void pull(Scene& scene, Chance& chance) {
   if (chance.is(0.5)) scene.gravity = chance.vector(scene.dimension, 3);
+  load_some(scene, chance);
 }
 
 // The scene with its mirror images in `planes` coordinate planes, joined across them. Nodes on a
@@ -104,7 +113,7 @@ Scene mirrored(const Scene& half, Chance& chance, int planes, bool part_there) {
       if (!chance.is(0.4)) continue;
       node.position[d] = 0;
       // Else it and its image start at one place and part.
-      if (!part_there) node.velocity[d] = 0;
+      if (!part_there) node.velocity[d] = node.load[d] = 0;
     }
   }
   for (int d = 0; d < planes; ++d) {
@@ -112,8 +121,9 @@ Scene mirrored(const Scene& half, Chance& chance, int planes, bool part_there) {
     std::vector<std::size_t> image(count);
     for (std::size_t i = 0; i < count; ++i) {
       Node other = scene.nodes[i];
-      const bool is_on_plane = other.position[d] == 0 && other.velocity[d] == 0;
-      other.position[d] *= -1, other.velocity[d] *= -1;
+      const bool is_on_plane =
+          other.position[d] == 0 && other.velocity[d] == 0 && other.load[d] == 0;
+      other.position[d] *= -1, other.velocity[d] *= -1, other.load[d] *= -1;
       image[i] = is_on_plane ? i : scene.nodes.size();
       if (image[i] != i) scene.nodes.push_back(other);
     }
@@ -214,6 +224,7 @@ void move(Scene& scene, const Eigen::Matrix3d& rotation, const Vector3d& shift) 
   for (Node& node : scene.nodes) {
     node.position = rotation * node.position + shift;
     node.velocity = rotation * node.velocity;
+    node.load = rotation * node.load;
   }
   scene.gravity = rotation * scene.gravity;
 }
@@ -260,6 +271,7 @@ Scene falling(Chance& chance, int dimension) {
   const Vector3d thrown = chance.is(0.8) ? chance.vector(dimension, 3) : Vector3d::Zero();
   for (Node& node : scene.nodes) node.velocity += thrown;
   scene.gravity = chance.is(0.8) ? chance.vector(dimension, 9.81) : Vector3d::Zero();
+  load_some(scene, chance);
   if (chance.is(0.3)) {
     const std::size_t first = scene.nodes.size();
     add_network(scene, chance, 1 + chance.below(3), dimension);

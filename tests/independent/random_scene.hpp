@@ -23,6 +23,7 @@ struct RandomScene {
 // - several parts with free nodes, double and slack springs,
 // - springs of rest length zero, massless joints,
 // - all of these far from the origin.
+// Loads act on some nodes of many of them.
 RandomScene random_scene(std::uint64_t seed);
 
 }  // namespace tests

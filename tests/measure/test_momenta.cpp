@@ -38,6 +38,13 @@ Scene triangle(std::vector<Eigen::Vector3d> pins, Eigen::Vector3d gravity) {
   return scene;
 }
 
+// The same with loads of these sizes along a direction.
+Scene loaded(Scene scene, const Eigen::Vector3d& direction) {
+  for (std::size_t i = 0; i < 3; ++i)
+    scene.nodes[i].load = (1 + static_cast<double>(i)) * direction;
+  return scene;
+}
+
 const Eigen::Vector3d none = {0, 0, 0}, down = {0, 0, -9.81}, at = {0.3, 0.2, 2};
 
 }  // namespace
@@ -47,7 +54,9 @@ BOOST_AUTO_TEST_CASE(what_symmetry_says_is_kept) {
   constexpr double rounding = 1e-12;
   for (const Scene& scene :
        {triangle({}, none), triangle({}, down), triangle({at}, none), triangle({at}, down),
-        triangle({at, {0.3, 0.2, -1}}, down), triangle({at, {1.3, 0.2, 1}}, none)})
+        triangle({at, {0.3, 0.2, -1}}, down), triangle({at, {1.3, 0.2, 1}}, none),
+        loaded(triangle({}, none), {1, 2, 3}), loaded(triangle({}, {1, 0, 0}), down),
+        loaded(triangle({at}, down), down)})
     BOOST_TEST(change_of_run(scene, 1) < rounding);
 }
 
@@ -55,6 +64,13 @@ BOOST_AUTO_TEST_CASE(what_it_does_not_say_is_not_asked_for) {
   const auto any_kept = [](const Scene& scene) { return Momenta(scene).any_kept(); };
   BOOST_TEST(!any_kept(triangle({at, {1.3, 0.2, 1}}, down)));
   BOOST_TEST(!any_kept(triangle({at, {1.3, 0.2, 1}, {0, 3, 1}}, none)));
+  BOOST_TEST(!any_kept(loaded(triangle({at}, down), {1, 0, 0})));
+  const Momenta free(loaded(triangle({}, none), {1, 2, 3}));
+  BOOST_TEST(free.has_linear());
+  BOOST_TEST(free.angular(triangle({}, none).nodes).size() == 1);  // along the loads
+  Scene skew = loaded(triangle({}, none), {1, 2, 3});
+  skew.nodes[0].load = {1, 0, 0};
+  BOOST_TEST(!Momenta(skew).has_angular());
   BOOST_TEST(!any_kept(load_scene("cloth")));
   BOOST_TEST(!any_kept(load_scene("oscillator")));
   BOOST_TEST(any_kept(load_scene("orbit")));

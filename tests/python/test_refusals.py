@@ -54,6 +54,7 @@ OF_SCENES = {
     "mass: .* real numbers": dict(mass=np.array([True, False])),
     r"stiffness: -1 is not allowed": dict(stiffness=-1.0),
     "velocities: their shape": dict(velocities=[[1.0, 2.0]]),
+    "load: their shape": dict(load=[[1.0, 2.0]]),
     "gravity": dict(gravity=[1.0, 2.0]),
     "until": dict(until=-1.0),
 }
@@ -240,9 +241,10 @@ class Refusals(unittest.TestCase):
 class Meaning(Programs):
     def test_a_scene_is_its_arrays(self):
         given = problems.random_scene(7)
+        given = given.replace(load=np.arange(24.0).reshape(8, 3) - 10)
         given.save("given.toml")
         read = qddot.Scene.load("given.toml")
-        names = "positions velocities mass pinned springs stiffness rest_length".split()
+        names = "positions velocities loads mass pinned springs stiffness rest_length".split()
         for name in names:
             self.assertTrue(np.array_equal(getattr(given, name), getattr(read, name)), name)
             with self.assertRaises(ValueError):
@@ -287,6 +289,32 @@ class Meaning(Programs):
         self.assertTrue(np.array_equal(welded.positions[1], [0, 1, 1]))
         self.assertEqual(len(welded.mass), 5)
         self.assertTrue(np.array_equal(welded.velocities, np.tile([1.0, 2, 3], (5, 1))))
+
+    def test_a_mesh_with_loads_density_and_groups(self):
+        # A triangle of 1/2 m^2, whose edge from vertex 1 to 2 has the mark 7.
+        text = (
+            "MeshVersionFormatted 1\nDimension 2\nVertices\n3\n0 0 0\n1 0 0\n0 1 0\n"
+            "Triangles\n1\n1 2 3 0\nEdges\n1\n1 2 7\nEnd\n"
+        )
+        mesh = qddot.Scene.from_mesh(
+            write("marked.mesh", text), stiffness=10, density=12, pins=[np.array([0])],
+            loads=[(7, [0, 0, 2]), (([0, 0.5, 0], [1, 1, 0]), [1, 0, 0])],
+        )  # fmt: skip
+        # Equal shares, of numbers without rounding.
+        self.assertEqual(list(mesh.mass), [2, 2, 2])
+        self.assertEqual(list(mesh.pinned), [True, False, False])
+        self.assertEqual(mesh.loads.tolist(), [[0, 0, 2], [0, 0, 2], [1, 0, 0]])
+        with self.assertRaisesRegex(ValueError, "mesh.pin.*'left'.*7 of dimension 1"):
+            qddot.Scene.from_mesh("marked.mesh", stiffness=10, node_mass=1, pins=["left"])
+
+    def test_loads_pull(self):
+        # The oscillator x'' = 3 - 4 x from rest: x = 3/4 (1 - cos 2t).
+        held = qddot.Scene(
+            [[0.0], [0.0]], [(0, 1)], stiffness=4, mass=1, pinned=[0], rest_length=0,
+            load=[[0.0], [3.0]],
+        )  # fmt: skip
+        end = qddot.solve(held, "exact", step_size=0.1, until=1.0).or_raise().end
+        self.assertAlmostEqual(end.q[1, 0], 0.75 * (1 - np.cos(2)), delta=1e-14)
 
     def test_explanations_and_methods(self):
         chain = problems.Chain(3).scene()

@@ -28,6 +28,7 @@ inline Scene turned(Scene scene, const Eigen::Matrix3d& rotation, const Eigen::V
   for (Node& node : scene.nodes) {
     node.position = rotation * node.position + shift;
     node.velocity = rotation * node.velocity;
+    node.load = rotation * node.load;
   }
   scene.gravity = rotation * scene.gravity;
   scene.dimension = 3;
@@ -91,13 +92,13 @@ inline std::vector<Node> at_start(const Scene& scene) {
   return nodes;
 }
 
-// V of all springs and of the weight of the free nodes, spring by spring over all nodes.
+// V of all springs and of the weights and loads of the free nodes, spring by spring over all nodes.
 inline double potential_by_hand(const Scene& scene, const std::vector<Node>& nodes) {
   double v = 0;
   for (const auto& [ends, law, holds, stiff] : scene.springs)
     v += law.energy((nodes[ends[1]].position - nodes[ends[0]].position).norm());
   for (const Node& node : nodes) {
-    if (!node.pinned) v -= node.mass * scene.gravity.dot(node.position);
+    if (!node.pinned) v -= (node.mass * scene.gravity + node.load).dot(node.position);
   }
   return v;
 }

@@ -33,6 +33,7 @@ inline std::string first_difference(const Scene& a, const Scene& b) {
     if (!same_bits(m.velocity, n.velocity)) return "velocity";
     if (!same_bits(m.mass, n.mass)) return "mass";
     if (m.pinned != n.pinned) return "pinned";
+    if (!same_bits(m.load, n.load)) return "load";
   }
   if (a.springs.size() != b.springs.size()) return "springs";
   for (std::size_t i = 0; i < a.springs.size(); ++i) {

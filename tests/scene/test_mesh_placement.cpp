@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(pins_may_name_nodes) {
            {"pin = [{nodes = 1}]\n", {"mesh.pin[0].nodes", "arrays of nodes"}},
            {"pin = [{nodes = [1.5]}]\n", {"arrays of nodes"}},
            {"pin = [{nodes = []}]\n", {"arrays of nodes"}},
-           {"pin = [{nodes = [1], min = [0, 0, 0]}]\n", {"either nodes, or min and max"}},
+           {"pin = [{nodes = [1], min = [0, 0, 0]}]\n", {"one of nodes, group, and a box"}},
            {"weld = -1\n", {"mesh.weld", "from 0"}},
            {"rotation = 90\n", {"mesh.rotation", "3 finite numbers"}}}) {
     const std::string message = refusal_of([&] { scene_of(keys); });

@@ -2,6 +2,7 @@
 // and V are those of all nodes and springs at expand(q, v); f and K are derivatives of that V.
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/scene/reduce/part.hpp"
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
@@ -84,6 +85,27 @@ Scene thrown_pair() {
   return scene;
 }
 
+// The scene with a load on every node.
+Scene loaded(Scene scene, std::mt19937& random) {
+  std::uniform_real_distribution<double> force(-5, 5);
+  for (Node& node : scene.nodes) {
+    for (int d = 0; d < scene.dimension; ++d) node.load[d] = force(random);
+  }
+  return scene;
+}
+// The cloth of 6 x 6 nodes with loads that are images of each other.
+Scene cloth_with_mirrored_loads() {
+  Scene scene = draw("cloth", {{"nodes", 6}});
+  scene.nodes[8].load = {1, 2, 3};
+  scene.nodes[26].load = {-1, 2, 3};
+  return scene;
+}
+Scene loaded_pair(const Eigen::Vector3d& load) {
+  Scene scene = thrown_pair();
+  scene.nodes[0].load = load;
+  return scene;
+}
+
 // Unknowns: pins, planes and mirrors by hand.
 std::vector<Case> cases() {
   const Eigen::Vector3d shift(3, -2, 7);
@@ -107,10 +129,18 @@ std::vector<Case> cases() {
       {"straight line", hanging_line(0.9), Reduction::constant_stiffness, 2},
       {"no rest lengths", hanging_line(0), Reduction::constant_stiffness, 2},
       {"falling", thrown_pair(), Reduction::falling, 2},
+      {"mirrored loads", cloth_with_mirrored_loads(), Reduction::mirror, 3 * 17},
+      {"mirrored loads, tilted", turned(cloth_with_mirrored_loads(), some_rotation(), shift),
+       Reduction::mirror, 3 * 17},
+      {"falling with a load", loaded_pair({0, 0, 0.7}), Reduction::falling, 2},
+      {"falling with a load askew", loaded_pair({0.3, 0.2, 0.7}), Reduction::falling, 4},
   };
   std::mt19937 random(8);
   for (const int dimension : {1, 2, 3, 3})
     all.push_back({"random", random_scene(random, dimension), Reduction::pins, 7 * dimension});
+  for (const int dimension : {1, 2, 3})
+    all.push_back({"random", loaded(random_scene(random, dimension), random), Reduction::pins,
+                   7 * dimension});
   all.push_back(all.back());
   all.back().unknowns = 0;
   for (Node& node : all.back().scene.nodes) node.pinned = true;
@@ -172,8 +202,9 @@ BOOST_AUTO_TEST_CASE(force_and_stiffness_are_derivatives_of_the_scenes_own_poten
       const ReducedScene reduced(scene);
       std::mt19937 random(3);
       const State state = moved(reduced, 0.02, random);
-      Scene pulling = scene;  // in a frame that falls nothing has weight
-      if (has(reduced, Reduction::falling)) pulling.gravity.setZero();
+      Scene pulling = scene;  // in a frame that falls nothing has weight but by its loads
+      if (has(reduced, Reduction::falling))
+        pulling.gravity -= reduced.parts().front().fall().gravity;
       const auto v = [&](const Vec& q) {
         const State at{0, q, state.v};
         return Vec::Constant(1, potential_by_hand(pulling, reduced.expand(at)));

@@ -68,6 +68,9 @@ Scene random_scene(unsigned seed) {
   scene.gravity = vector();
   for (std::size_t i = 0; i < 2 + numbers.below(6); ++i)
     scene.nodes.push_back({vector(), vector(), numbers.not_negative(), numbers.below(2) == 0});
+  for (Node& node : scene.nodes) {
+    if (node.mass > 0 && numbers.below(3) == 0) node.load = vector();
+  }
   for (std::size_t i = 0; i < numbers.below(8); ++i) {
     const std::size_t a = numbers.below(scene.nodes.size());
     const std::size_t b = (a + 1) % scene.nodes.size();

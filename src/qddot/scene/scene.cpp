@@ -41,6 +41,7 @@ struct Entry {
 void check_node(const Entry& entry, const Node& node) {
   entry.check_finite("position", node.position);
   entry.check_finite("velocity", node.velocity);
+  entry.check_finite("load", node.load);
   entry.check_not_negative("mass", node.mass);
 }
 
@@ -64,6 +65,21 @@ void check_spring(const Entry& entry, const Spring& spring, const std::vector<No
     entry.refuse("rest_length",
                  fmt::format("{} is not allowed as nodes {} and {} coincide; allowed is 0",
                              spring.law.rest_length, i, j));
+}
+
+// Refuses loads that nothing resists: they would move a node at once and without end.
+void check_loads(const std::string& source, const Scene& scene) {
+  std::vector<bool> has_spring;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    if (node.mass > 0 || node.acting_load().isZero(0)) continue;
+    if (has_spring.empty()) has_spring = nodes_on_springs(scene);
+    if (has_spring[i]) continue;
+    Entry{source, "nodes", i}.refuse(
+        "load", fmt::format("[{}, {}, {}] is not allowed on a node with neither mass nor a spring "
+                            "that pulls; allowed is zero",
+                            node.load[0], node.load[1], node.load[2]));
+  }
 }
 
 void check_face(const Entry& entry, const std::array<std::size_t, 3>& face, std::size_t nodes) {
@@ -97,6 +113,15 @@ class Hash {
 
 }  // namespace
 
+std::vector<bool> nodes_on_springs(const Scene& scene) {
+  std::vector<bool> is_held(scene.nodes.size(), false);
+  for (const Spring& spring : scene.springs) {
+    if (spring.law.stiffness == 0 && spring.law.quartic == 0) continue;
+    for (const std::size_t node : spring.nodes) is_held[node] = true;
+  }
+  return is_held;
+}
+
 void validate(const Scene& scene, const std::string& source) {
   const Entry whole{source};
   if (scene.dimension < 1 || scene.dimension > 3)
@@ -109,6 +134,7 @@ void validate(const Scene& scene, const std::string& source) {
     check_node({source, "nodes", i}, scene.nodes[i]);
   for (std::size_t i = 0; i < scene.springs.size(); ++i)
     check_spring({source, "springs", i}, scene.springs[i], scene.nodes);
+  check_loads(source, scene);
   for (std::size_t i = 0; i < scene.faces.size(); ++i)
     check_face({source, "faces", i}, scene.faces[i], scene.nodes.size());
 }
@@ -133,6 +159,10 @@ std::string content_hash(const Scene& scene) {
   }
   // The flag is added only if it is true, which keeps the hashes of all other scenes.
   if (scene.starts_at_equilibrium) hash.add(std::uint64_t(1));
+  // Likewise loads.
+  if (has_loads(scene)) {
+    for (const Node& node : scene.nodes) hash.add(node.acting_load());
+  }
   return hash.digits();
 }
 

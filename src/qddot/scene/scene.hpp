@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -18,6 +19,13 @@ struct Node {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // [m/s]
   double mass = 0;                                     // [kg], 0 = massless; ignored where pinned
   bool pinned = false;                                 // stays at its position for ever
+  // A constant force beside the weight [N]; a pin carries it.
+  Eigen::Vector3d load = Eigen::Vector3d::Zero();
+
+  // The load that acts on its motion [N]: zero where it is pinned.
+  Eigen::Vector3d acting_load() const {
+    return pinned ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : load;
+  }
 };
 
 // A spring between two nodes, by their indices.
@@ -30,8 +38,8 @@ struct Spring {
   bool stiff = false;
 };
 
-// A scene as the user drew it: nodes, springs and gravity, with nothing derived or left out. Faces
-// are for pictures only.
+// A scene as the user drew it: nodes, springs, gravity and loads, with nothing derived or left out.
+// Faces are for pictures only.
 struct Scene {
   std::string name{};
   int dimension = 3;                                  // 1, 2 or 3
@@ -56,12 +64,22 @@ inline bool is_stiff(const SpringLaw& law, std::optional<double> stiff_above) {
   return stiff_above && law.stiffness > *stiff_above;
 }
 
+// Whether a node that moves has a load.
+inline bool has_loads(const Scene& scene) {
+  return std::ranges::any_of(scene.nodes,
+                             [](const Node& node) { return !node.acting_load().isZero(0); });
+}
+
+// Whether each node is an end of a spring that can pull.
+std::vector<bool> nodes_on_springs(const Scene& scene);
+
 // Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
 // unless
 //   every number is finite, and the dimension is 1, 2 or 3;
 //   masses, stiffnesses and rest lengths are not negative; `until` and `stiff_above` are above 0;
 //   each spring joins two different existing nodes, which are apart if its rest_length > 0 (else it
 //   has no direction);
+//   a node with a load has mass, a pin, or a spring that pulls;
 //   each face has three different existing nodes.
 void validate(const Scene& scene, const std::string& source);
 

@@ -34,19 +34,25 @@ void require_node(std::size_t node, std::size_t count, const std::string& where)
       fmt::format("{}: node {} is none of the {} nodes, which count from 0", where, node, count));
 }
 
+void require_as_positions(const SceneArrays& a, const char* name, const Eigen::MatrixXd& array) {
+  const bool fits = array.rows() == a.positions.rows() && array.cols() == a.positions.cols();
+  require_size(array.size() == 0 || fits, name, array.size(),
+               fmt::format("{}", a.positions.size()));
+}
+
 std::vector<Node> nodes_of(const SceneArrays& a) {
   const auto count = static_cast<std::size_t>(a.positions.rows());
   const Index dimension = a.positions.cols();
-  const bool is_moving = a.velocities.size() > 0;
-  require_size(
-      !is_moving || (a.velocities.rows() == a.positions.rows() && a.velocities.cols() == dimension),
-      "velocities", a.velocities.size(), fmt::format("{}", a.positions.size()));
+  const bool is_moving = a.velocities.size() > 0, is_loaded = a.load.size() > 0;
+  require_as_positions(a, "velocities", a.velocities);
+  require_as_positions(a, "load", a.load);
   const Values mass("mass", a.mass, count);
   std::vector<Node> nodes(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto row = static_cast<Index>(i);
     nodes[i].position.head(dimension) = a.positions.row(row).transpose();
     if (is_moving) nodes[i].velocity.head(dimension) = a.velocities.row(row).transpose();
+    if (is_loaded) nodes[i].load.head(dimension) = a.load.row(row).transpose();
     nodes[i].mass = mass[i];
   }
   for (std::size_t k = 0; k < a.pinned.size(); ++k) {

@@ -18,6 +18,7 @@ struct SceneArrays {
   std::vector<std::size_t> pinned{};                  // nodes that do not move
   Eigen::VectorXd gravity{};                          // dimension [m/s^2]; empty: none
   Eigen::MatrixXd velocities{};                       // as positions [m/s]; empty: at rest
+  Eigen::MatrixXd load{};                             // as positions [N]; empty: none
   Eigen::VectorXd rest_length{};  // [m], of each spring or of all; empty: its length as given
   Eigen::VectorXd quartic{};      // [N/m^3], likewise; empty: none
 };

@@ -10,17 +10,19 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh.hpp"
 #include "qddot/scene/mesh/mesh_scene.hpp"
+#include "qddot/scene/node_choice.hpp"
 #include "qddot/scene/toml_table.hpp"
 
 namespace qddot {
 namespace {
 
 Node node_in(const TomlTable& table, int dimension) {
-  table.allow_keys({"position", "velocity", "mass", "pinned"});
+  table.allow_keys({"position", "velocity", "mass", "pinned", "load"});
   Node node;
   node.position = table.vector("position", dimension);
   node.velocity = table.vector_or_zero("velocity", dimension);
   node.pinned = table.flag_or_false("pinned");
+  node.load = table.vector_or_zero("load", dimension);
   if (!node.pinned || table.has("mass")) node.mass = table.number("mass", not_negative);
   return node;
 }
@@ -58,9 +60,11 @@ Scene generated(const TomlTable& table, const SceneLimits& limits) {
   if (!generator) table.refuse("kind", generator_names());
   GeneratorValues values;
   for (const std::string& key : table.keys()) {
-    if (key != "kind") values[key] = table.number(key);
+    if (key != "kind" && key != "load") values[key] = table.number(key);
   }
-  return generate(*generator, values, table.place(), limits);
+  Scene scene = generate(*generator, values, table.place(), limits);
+  add_loads(table, {}, scene);
+  return scene;
 }
 
 // Throws InvalidInput unless the nodes come from exactly one of their possible origins.
@@ -88,11 +92,7 @@ bool starts_at_equilibrium(const TomlTable& file) {
 
 // Warns of nodes with undetermined motion: no mass, no pin, and no spring that pulls.
 void warn_of_loose_nodes(Scene& scene) {
-  std::vector<bool> is_held(scene.nodes.size(), false);
-  for (const Spring& spring : scene.springs) {
-    if (spring.law.stiffness == 0 && spring.law.quartic == 0) continue;
-    for (const std::size_t node : spring.nodes) is_held[node] = true;
-  }
+  const std::vector<bool> is_held = nodes_on_springs(scene);
   std::vector<std::size_t> loose;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     if (!scene.nodes[i].pinned && scene.nodes[i].mass == 0 && !is_held[i]) loose.push_back(i);
@@ -106,6 +106,18 @@ void warn_of_loose_nodes(Scene& scene) {
       loose.size() == 1 ? "" : "s", fmt::join(listed, ", "), loose.size() > most ? ", ..." : "",
       loose.size() == 1 ? "has" : "have", loose.size() == 1 ? "its" : "their",
       loose.size() == 1 ? "it keeps" : "they keep"));
+}
+
+// Warns of loads on pinned nodes, as boxes may put them there.
+void warn_of_carried_loads(Scene& scene) {
+  const auto carried = std::ranges::count_if(
+      scene.nodes, [](const Node& node) { return node.pinned && !node.load.isZero(0); });
+  if (carried == 0) return;
+  scene.warnings.push_back(fmt::format(
+      "{} and move{} nothing",
+      carried == 1 ? "the load of 1 pinned node is carried by its pin"
+                   : fmt::format("the loads of {} pinned nodes are carried by their pins", carried),
+      carried == 1 ? "s" : ""));
 }
 
 void require_no_mesh(const std::string& path) {
@@ -142,6 +154,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
   scene.starts_at_equilibrium = starts_at_equilibrium(file);
   validate(scene, path);
   warn_of_loose_nodes(scene);
+  warn_of_carried_loads(scene);
   return scene;
 }
 

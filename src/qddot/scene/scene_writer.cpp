@@ -14,6 +14,10 @@ namespace {
 // False for -0, which must be written.
 bool is_plain_zero(double x) { return std::bit_cast<std::uint64_t>(x) == 0; }
 
+bool is_plain_zero(const Eigen::Vector3d& x) {
+  return is_plain_zero(x[0]) && is_plain_zero(x[1]) && is_plain_zero(x[2]);
+}
+
 // The number of bytes of the UTF-8 sequence at the start of `text`; 0 if there is none.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
@@ -95,13 +99,10 @@ class TomlText {
 void add_node(const Node& node, int dimension, TomlText& out) {
   out.add("\n[[nodes]]\n");
   out.line("position", node.position, dimension);
-  for (const double v : node.velocity) {
-    if (is_plain_zero(v)) continue;
-    out.line("velocity", node.velocity, dimension);
-    break;
-  }
+  if (!is_plain_zero(node.velocity)) out.line("velocity", node.velocity, dimension);
   out.line("mass", node.mass);
   if (node.pinned) out.add("pinned = true\n");
+  if (!is_plain_zero(node.load)) out.line("load", node.load, dimension);
 }
 
 void add_spring(const Spring& spring, TomlText& out) {

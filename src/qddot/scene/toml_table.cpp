@@ -103,6 +103,8 @@ bool TomlTable::flag_or_false(std::string_view key) const {
   return flag->get();
 }
 
+bool TomlTable::is_text(std::string_view key) const { return table_[key].is_string(); }
+
 std::string TomlTable::text(std::string_view key) const {
   const auto* text = table_[key].as_string();
   if (!text) refuse(key, "quoted texts");

@@ -53,8 +53,10 @@ class TomlTable {
   std::vector<std::size_t> nodes(std::string_view key, std::size_t count) const;
   // Two of `count` nodes, by their indices.
   std::array<std::size_t, 2> node_pair(std::string_view key, std::size_t count) const;
-  // The boolean at `key`, false if the key is missing; the string; the table.
+  // The boolean at `key`, false if the key is missing; whether there is a string; the string; the
+  // table.
   bool flag_or_false(std::string_view key) const;
+  bool is_text(std::string_view key) const;
   std::string text(std::string_view key) const;
   TomlTable table(std::string_view key) const;
   // The tables of an array of tables; none if the key is missing.

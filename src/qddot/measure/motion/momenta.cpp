@@ -20,16 +20,19 @@ const std::vector<Vector3d>& all_axes() {
   return axes;
 }
 
-// The axes about which gravity and the springs to pins at these points have no torque.
-std::vector<Vector3d> turning_axes(const std::vector<Vector3d>& pins, const Vector3d& gravity) {
-  if (pins.empty()) return all_axes();
+// The axes about which constant forces with these directions and the springs to pins at these
+// points have no torque.
+std::vector<Vector3d> turning_axes(const std::vector<Vector3d>& pins,
+                                   const std::vector<Vector3d>& pulls) {
   Vector3d line = Vector3d::Zero();  // along which all pins are
   for (const Vector3d& pin : pins) {
     if (line.isZero()) line = pin - pins.front();
     if (!parallel(line, pin - pins.front())) return {};
   }
-  if (!parallel(line, gravity)) return {};
-  if (line.isZero()) line = gravity;
+  for (const Vector3d& pull : pulls) {
+    if (!parallel(line, pull)) return {};
+    if (line.isZero()) line = pull;
+  }
   return line.isZero() ? all_axes() : std::vector<Vector3d>{line.normalized()};
 }
 
@@ -46,19 +49,22 @@ Vec along(const std::vector<Vector3d>& axes, const Vector3d& whole) {
 
 Momenta::Momenta(const Scene& scene) : gravity_(scene.gravity) {
   Eigen::AlignedBox3d box;
-  std::vector<Vector3d> pins;
+  std::vector<Vector3d> pins, pulls;
   for (const Node& node : scene.nodes) {
     box.extend(node.position);
     mass_ += moving_mass(node);
     if (node.pinned) pins.push_back(node.position);
+    const Vector3d load = node.acting_load();
+    if (!load.isZero(0)) pulls.push_back(load);
+    load_ += load;
   }
   if (!box.isEmpty() && box.diagonal().norm() > 0) extent_ = box.diagonal().norm();
-  if (!pins.empty()) pin_ = pins.front();
+  if (!pins.empty()) pin_ = pins.front(), pulls.push_back(gravity_);
   if (pins.empty()) {
     linear_axes_.assign(all_axes().begin(), all_axes().begin() + scene.dimension);
   }
   if (scene.dimension == 1) return;  // nothing turns
-  angular_axes_ = turning_axes(pins, gravity_);
+  angular_axes_ = turning_axes(pins, pulls);
   if (scene.dimension == 2) {
     std::erase_if(angular_axes_, [](const Vector3d& axis) { return axis.z() == 0; });
   }
@@ -79,7 +85,7 @@ Vector3d Momenta::centre_velocity(const std::vector<Node>& nodes) const {
 }
 
 Vec Momenta::linear(const std::vector<Node>& nodes, double t) const {
-  Vector3d sum = -mass_ * t * gravity_;
+  Vector3d sum = -mass_ * t * gravity_ - t * load_;
   for (const Node& node : nodes) sum += moving_mass(node) * node.velocity;
   return along(linear_axes_, sum);
 }

@@ -8,11 +8,13 @@
 namespace qddot::inline measure {
 
 // The momenta that are conserved in a scene's motion, whatever its springs do:
-//   nothing pinned:     the linear momentum, as P(t) - m g t with m the total mass, and the angular
-//                       momentum L about the centre of mass;
+//   nothing pinned:     the linear momentum, as P(t) - F t with F the weight and all loads, and the
+//                       angular momentum L about the centre of mass;
 //   one point pinned:   L about that point; with gravity g, the component of L along g alone;
 //   pins on one line:   L along the line, if it is parallel to g or there is no gravity;
 //   else:               none.
+// Loads act on L as gravity does, and also where nothing is pinned: only a component along all of
+// them is kept.
 class Momenta {
  public:
   explicit Momenta(const Scene& scene);
@@ -41,7 +43,8 @@ class Momenta {
   Eigen::Vector3d centre_velocity(const std::vector<Node>& nodes) const;
 
   std::vector<Eigen::Vector3d> linear_axes_, angular_axes_;
-  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero(), pin_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero(), load_ = Eigen::Vector3d::Zero(),
+                  pin_ = Eigen::Vector3d::Zero();
   double mass_ = 0, extent_ = 1;
 };
 

@@ -23,14 +23,16 @@ Reader reader_of(const std::filesystem::path& file) {
   if (ending == ".obj") return read_obj;
   if (ending == ".mesh") return read_medit;
   if (ending == ".msh") return read_gmsh;
+  if (ending == ".ply") return read_ply;
+  if (ending == ".stl") return read_stl;
   return nullptr;
 }
 
 Reader reader_for(const std::filesystem::path& file) {
   if (const Reader reader = reader_of(file)) return reader;
-  throw InvalidInput(
-      fmt::format("{}: the ending \"{}\" is not allowed; allowed are .obj, .mesh and .msh",
-                  file.string(), file.extension().string()));
+  throw InvalidInput(fmt::format(
+      "{}: the ending \"{}\" is not allowed; allowed are .obj, .mesh, .msh, .ply and .stl",
+      file.string(), file.extension().string()));
 }
 
 // Lines end with a line feed, a carriage return, or both, as each system writes them.
@@ -46,6 +48,11 @@ void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
   std::erase_if(edges, [](const auto& edge) { return edge[0] == edge[1]; });
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+}
+
+void keep_distinct(std::vector<std::size_t>& vertices) {
+  std::ranges::sort(vertices);
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 }
 
 using Face = std::array<std::size_t, 3>;
@@ -139,6 +146,12 @@ void Words::refuse(std::string_view field, std::string_view value, std::string_v
   throw InvalidInput(fmt::format("{}:{}: {}: {}; allowed {}", file_, line, field, what, allowed));
 }
 
+std::string_view Words::rest_of_line() {
+  const std::size_t start = at_;
+  pass_line();
+  return text_.substr(start, at_ - start);
+}
+
 std::optional<double> real_in(std::string_view word) {
   if (const auto value = number_in<double>(word)) return value;
   const std::size_t exponent = word.find_first_of("dD");
@@ -176,6 +189,7 @@ Mesh parse_mesh(const std::string& text, const std::filesystem::path& file, doub
   if (mesh.vertices.empty())
     throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
   if (weld_within >= 0) weld(welded(mesh.vertices, weld_within), mesh);
+  for (Group& group : mesh.groups) keep_distinct(group.vertices);
   keep_distinct(mesh.edges);
   add_boundary(mesh);
   keep_distinct_faces(mesh.faces);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,43 @@
 #include "qddot/scene/text_file.hpp"
 
 namespace qddot::mesh {
+
+// The elements of a mesh one after the other: lines of two corners, polygons, and solids of 4, 5, 6
+// or 8 corners (see mesh_elements.hpp for their order).
+class Cells {
+ public:
+  void add(int dimension, std::span<const std::size_t> corners) {
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    ends_.push_back(corners_.size());
+    dimensions_.push_back(static_cast<unsigned char>(dimension));
+  }
+
+  std::size_t size() const { return ends_.size(); }
+  int dimension(std::size_t e) const { return dimensions_[e]; }
+  // The vertices of element e.
+  std::span<const std::size_t> corners(std::size_t e) const {
+    const std::size_t first = e == 0 ? 0 : ends_[e - 1];
+    return std::span(corners_).subspan(first, ends_[e] - first);
+  }
+  // Of all elements; 0 if there is none.
+  int highest_dimension() const {
+    return dimensions_.empty() ? 0 : *std::ranges::max_element(dimensions_);
+  }
+  // The corners of all elements, to be renumbered.
+  std::vector<std::size_t>& all_corners() { return corners_; }
+
+ private:
+  std::vector<std::size_t> corners_, ends_;
+  std::vector<unsigned char> dimensions_;
+};
+
+// The vertices of all elements with a mark: a physical group of Gmsh, or a reference of MEDIT.
+struct Group {
+  int dimension;  // of its elements
+  int tag;
+  std::string name;                   // empty if it has none
+  std::vector<std::size_t> vertices;  // each once, ascending
+};
 
 // Vertices, distinct edges, triangles and faces of a surface or volume mesh. Vertices without an
 // edge are kept.
@@ -23,6 +62,8 @@ struct Mesh {
   // to one tetrahedron only. Triangles of the last kind face outwards if the tetrahedron has a
   // positive volume.
   std::vector<std::array<std::size_t, 3>> faces;
+  Cells cells{};  // as in the file; points are left out
+  std::vector<Group> groups{};
   // Sentences, without the name of the file, about parts of it that are not read and may matter.
   std::vector<std::string> warnings{};
 
@@ -35,11 +76,13 @@ bool is_mesh_file(const std::filesystem::path& file);
 
 // Reads a mesh; the file name's ending, in either case, chooses the format. A Wavefront .obj may
 // have lines and polygonal faces of the forms a, a/b, a//c, a/b/c; negative indices count back from
-// the last vertex, and a backslash continues a line. A MEDIT .mesh, or a Gmsh .msh of version 2,
-// 2.1, 2.2 or 4.1 (both ASCII), gives the edges between every element's corners, also of elements
-// of order 2 and 3. Numbers may have exponents with e or d. Vertices within the distance
-// `weld_within` [unit of the file] of each other are welded (see weld.hpp), none if it is negative.
-// Throws InvalidInput with the file, line, value and what is allowed.
+// the last vertex, and a backslash continues a line. A MEDIT .mesh (ASCII), or a Gmsh .msh of
+// version 2, 2.1, 2.2 or 4.1 (ASCII or binary), gives the edges between every element's corners,
+// also of elements of order 2 and 3. A .ply (ASCII or binary) has faces and edges. A .stl (ASCII or
+// binary) has triangles, whose equal corners are one vertex. Numbers of texts may have exponents
+// with e or d. Vertices within the distance `weld_within` [unit of the file] of each other are
+// welded (see weld.hpp), none if it is negative. Throws InvalidInput with the file, line or byte,
+// value and what is allowed.
 Mesh read_mesh(const std::filesystem::path& file, const TextSource& read = read_text,
                double weld_within = -1);
 

@@ -9,8 +9,8 @@
 
 namespace qddot::mesh {
 
-// A kind of element, as MEDIT and Gmsh call it, and its edges by the places of their two corners.
-// Both number the corners alike.
+// A kind of element, as MEDIT and Gmsh call it, its edges by the places of their two corners, and
+// the sides of a solid, all seen from outside or all from inside. Both number the corners alike.
 struct Element {
   std::string_view name;
   std::string_view medit_section;  // empty: not read from MEDIT files
@@ -18,16 +18,18 @@ struct Element {
   int dimension;
   std::size_t corners;
   std::string_view edges;
+  std::string_view sides{};
 };
 // All kinds of elements that are read.
 inline constexpr std::array<Element, 8> elements{{
     {"line", "Edges", 1, 1, 2, "01"},
     {"triangle", "Triangles", 2, 2, 3, "01 12 20"},
     {"quadrangle", "Quadrilaterals", 3, 2, 4, "01 12 23 30"},
-    {"tetrahedron", "Tetrahedra", 4, 3, 4, "01 02 03 12 13 23"},
-    {"hexahedron", "Hexahedra", 5, 3, 8, "01 12 23 30 45 56 67 74 04 15 26 37"},
-    {"prism", "Prisms", 6, 3, 6, "01 12 20 34 45 53 03 14 25"},
-    {"pyramid", "Pyramids", 7, 3, 5, "01 12 23 30 04 14 24 34"},
+    {"tetrahedron", "Tetrahedra", 4, 3, 4, "01 02 03 12 13 23", "021 013 032 123"},
+    {"hexahedron", "Hexahedra", 5, 3, 8, "01 12 23 30 45 56 67 74 04 15 26 37",
+     "0321 4567 0154 1265 2376 3047"},
+    {"prism", "Prisms", 6, 3, 6, "01 12 20 34 45 53 03 14 25", "021 345 0143 1254 2035"},
+    {"pyramid", "Pyramids", 7, 3, 5, "01 12 23 30 04 14 24 34", "0321 014 124 234 304"},
     {"point", "", 15, 0, 1, ""},
 }};
 // A kind of element of order 2 or 3. Its first nodes are the corners of the element of that name,
@@ -87,6 +89,16 @@ inline void add_polygon(std::span<const std::size_t> corners, Mesh& mesh) {
     mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
+// Appends a face with these corners.
+inline void add_face(std::span<const std::size_t> corners, Mesh& mesh) {
+  for (std::size_t k = 1; k < corners.size(); ++k)
+    mesh.edges.push_back({corners[k - 1], corners[k]});
+  mesh.edges.push_back({corners.back(), corners.front()});
+  mesh.cells.add(2, corners);
+  add_polygon(corners, mesh);
+  if (corners.size() == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+}
+
 // Appends an element with these vertices: its edges, its faces if it is a polygon, and the triangle
 // or the tetrahedron if it is one.
 inline void add_element(const Element& element, std::span<const std::size_t> corners, Mesh& mesh) {
@@ -95,6 +107,7 @@ inline void add_element(const Element& element, std::span<const std::size_t> cor
   };
   for (std::size_t k = 0; k < element.edges.size(); k += 3)
     mesh.edges.push_back({corner_at(k), corner_at(k + 1)});
+  if (element.dimension > 0) mesh.cells.add(element.dimension, corners.first(element.corners));
   if (element.corners == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
   if (element.dimension == 2) add_polygon(corners.first(element.corners), mesh);
   if (element.name == "tetrahedron")

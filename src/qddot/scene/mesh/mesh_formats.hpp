@@ -28,7 +28,13 @@ class Words {
   // Steps to the start of the next line; false where there is none.
   bool next_line();
 
+  // All that is left of this line.
+  std::string_view rest_of_line();
+
   int line() const { return line_; }
+  // The place of the next character, and a step to another place behind it.
+  std::size_t at() const { return at_; }
+  void go_to(std::size_t at) { at_ = at; }
 
   // Throws InvalidInput: `value`, met in `line`, is not one of those `allowed`.
   [[noreturn]] void refuse(std::string_view field, std::string_view value, std::string_view allowed,
@@ -65,9 +71,12 @@ std::optional<Number> number_in(std::string_view word) {
 // The real number that is all of `word`. Its exponent may follow e or, as Fortran writes it, d.
 std::optional<double> real_in(std::string_view word);
 
-// Read one format each. Edges come as the file has them: repeated, in either direction, unsorted.
+// Read one format each. Edges and vertices of groups come as the file has them: repeated, in either
+// direction, unsorted.
 Mesh read_obj(std::string_view text, const std::string& file);
 Mesh read_medit(std::string_view text, const std::string& file);
 Mesh read_gmsh(std::string_view text, const std::string& file);
+Mesh read_ply(std::string_view text, const std::string& file);
+Mesh read_stl(std::string_view text, const std::string& file);
 
 }  // namespace qddot::mesh

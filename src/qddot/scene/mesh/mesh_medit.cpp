@@ -5,6 +5,7 @@
 
 #include "qddot/scene/mesh/mesh_elements.hpp"
 #include "qddot/scene/mesh/mesh_formats.hpp"
+#include "qddot/scene/mesh/mesh_groups.hpp"
 
 namespace qddot::mesh {
 namespace {
@@ -55,6 +56,7 @@ class MeditReader {
     if (largest_ > mesh_.vertices.size())
       words_.refuse("element", std::to_string(largest_),
                     fmt::format("are the vertices 1 to {}", mesh_.vertices.size()), largest_line_);
+    mesh_.groups = groups_.all();
     return std::move(mesh_);
   }
 
@@ -93,14 +95,22 @@ class MeditReader {
   }
   // The number of entries in a section. Nothing is reserved for them before they are seen.
   std::size_t count(std::string_view field) { return whole(field, 0, 1'000'000'000); }
-  void skip_reference(std::string_view field) { words_.number(field, words_.next()); }
+  // Puts an element, of the vertices named last, into the group of the reference that follows. Zero
+  // marks none.
+  void read_reference(std::string_view field, int dimension,
+                      std::span<const std::size_t> vertices) {
+    const double reference = words_.number(field, words_.next());
+    const int tag = static_cast<int>(std::clamp(reference, -2e9, 2e9));
+    if (tag != 0) groups_.add(dimension, tag, vertices);
+  }
 
   void read_vertices() {
     constexpr std::string_view field = "Vertices";
     for (std::size_t left = count(field); left > 0; --left) {
       Eigen::Vector3d x = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < dimension_; ++k) x[k] = words_.number(field, words_.next());
-      skip_reference(field);
+      const std::size_t own = mesh_.vertices.size();
+      read_reference(field, 0, {&own, 1});
       mesh_.vertices.push_back(x);
     }
   }
@@ -112,7 +122,8 @@ class MeditReader {
         const std::size_t node = corner(field);
         if (k < listed.element->corners) corners[k] = node;
       }
-      skip_reference(field);
+      read_reference(field, listed.element->dimension,
+                     std::span(corners).first(listed.element->corners));
       add_element(*listed.element, corners, mesh_);
     }
   }
@@ -128,6 +139,7 @@ class MeditReader {
 
   Words words_;
   Mesh mesh_;
+  GroupCollection groups_;
   std::size_t dimension_ = 3;
   std::vector<std::string_view> seen_;  // sections
   std::size_t largest_ = 0;             // the largest index, counted from 1

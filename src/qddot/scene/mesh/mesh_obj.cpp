@@ -24,19 +24,18 @@ std::size_t corner_in(std::string_view word, const Words& words, std::size_t cou
   return static_cast<std::size_t>(*index > 0 ? *index - 1 : n + *index);
 }
 
-void add_face(Words& words, bool closed, Mesh& mesh) {
+void add_line(Words& words, bool closed, Mesh& mesh) {
   std::vector<std::size_t> corners;
   for (auto word = words.in_line(); !word.empty(); word = words.in_line())
     corners.push_back(corner_in(word, words, mesh.vertices.size()));
   if (corners.size() < (closed ? 3 : 2))
     words.refuse("face", "", "are three corners or more for f, two or more for l");
 
-  for (std::size_t i = 1; i < corners.size(); ++i)
+  if (closed) return add_face(corners, mesh);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
     mesh.edges.push_back({corners[i - 1], corners[i]});
-  if (!closed) return;
-  mesh.edges.push_back({corners.back(), corners.front()});
-  add_polygon(corners, mesh);
-  if (corners.size() == 3) mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+    mesh.cells.add(1, mesh.edges.back());
+  }
 }
 
 void add_vertex(Words& words, Mesh& mesh) {
@@ -78,7 +77,7 @@ Mesh read_obj(std::string_view text, const std::string& file) {
     if (kind == "v") {
       add_vertex(words, mesh);
     } else if (kind == "f" || kind == "fo" || kind == "l") {
-      add_face(words, kind != "l", mesh);
+      add_line(words, kind != "l", mesh);
     } else if (!kind.empty() && !is_silent_line(kind)) {
       if (!is_keyword(kind))
         words.refuse("line", kind, "are lines that begin with a keyword, such as v, f or l");

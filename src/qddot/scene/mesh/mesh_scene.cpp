@@ -11,8 +11,10 @@
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/mesh/lumped_mass.hpp"
 #include "qddot/scene/mesh/mesh.hpp"
 #include "qddot/scene/mesh/weld.hpp"
+#include "qddot/scene/node_choice.hpp"
 
 namespace qddot {
 namespace {
@@ -46,11 +48,37 @@ std::vector<std::array<std::size_t, 2>> bending_pairs(const TomlTable& table, co
   return pairs;
 }
 
-double mass_of_each(const TomlTable& table, std::size_t nodes) {
-  if (table.has("node_mass") == table.has("total_mass"))
-    table.fail("node_mass", "allowed is exactly one of node_mass and total_mass");
-  if (table.has("node_mass")) return table.number("node_mass", not_negative);
-  return table.number("total_mass", not_negative) / static_cast<double>(nodes);
+// Throws InvalidInput unless exactly one key gives the masses.
+void require_one_mass(const TomlTable& table) {
+  const bool by_node = table.has("node_mass"), by_total = table.has("total_mass"),
+             by_density = table.has("density");
+  if (by_node + by_total + by_density == 1) return;
+  table.fail(by_node || !by_density ? "node_mass" : "density",
+             "allowed is exactly one of node_mass, total_mass and density");
+}
+
+// The mass of each vertex by the mesh's density; none without that key.
+std::vector<double> masses_by_density(const TomlTable& table, const Mesh& mesh) {
+  if (!table.has("density")) return {};
+  const double density = table.number("density", positive);
+  const std::vector<double> masses = lumped_masses(mesh, density);
+  std::vector<bool> is_seen(masses.size(), false);
+  std::size_t without = 0;
+  for (const auto& edge : mesh.edges) {
+    for (const std::size_t vertex : edge) {
+      without += !is_seen[vertex] && masses[vertex] == 0;
+      is_seen[vertex] = true;
+    }
+  }
+  if (without > 0)
+    table.fail("density",
+               fmt::format("{} is not allowed as {} belong{} to no {}; allowed are "
+                           "node_mass and total_mass",
+                           density, without == 1 ? "1 vertex" : fmt::format("{} vertices", without),
+                           without == 1 ? "s" : "",
+                           mesh.cells.highest_dimension() == 3 ? "element with volume"
+                                                               : "element with area"));
+  return masses;
 }
 
 void add_springs(const std::vector<std::array<std::size_t, 2>>& pairs, double stiffness,
@@ -61,15 +89,18 @@ void add_springs(const std::vector<std::array<std::size_t, 2>>& pairs, double st
   }
 }
 
-// Leaves out the vertices at which no edge ends; the others keep their order. Returns how many.
-std::size_t leave_out_unused(Mesh& mesh) {
+// Leaves out the vertices at which no edge ends, and their masses; the others keep their order.
+// Returns how many. Elements (Mesh::cells) keep the old numbers.
+std::size_t leave_out_unused(Mesh& mesh, std::vector<double>& masses) {
   std::vector<bool> is_used(mesh.vertices.size(), false);
   for (const auto& edge : mesh.edges) is_used[edge[0]] = is_used[edge[1]] = true;
   std::vector<std::size_t> number(mesh.vertices.size());
   std::size_t used = 0;
   for (std::size_t i = 0; i < number.size(); ++i) {
     number[i] = used;
-    if (is_used[i]) mesh.vertices[used++] = mesh.vertices[i];
+    if (!is_used[i]) continue;
+    if (!masses.empty()) masses[used] = masses[i];
+    mesh.vertices[used++] = mesh.vertices[i];
   }
   const std::size_t unused = mesh.vertices.size() - used;
   if (unused == 0) return 0;
@@ -86,6 +117,11 @@ std::size_t leave_out_unused(Mesh& mesh) {
   });
   renumber(mesh.triangles);
   renumber(mesh.faces);  // whose corners are three, so that an edge ends at each
+  for (Group& group : mesh.groups) {
+    std::erase_if(group.vertices, [&](std::size_t vertex) { return !is_used[vertex]; });
+    for (std::size_t& vertex : group.vertices) vertex = number[vertex];
+  }
+  std::erase_if(mesh.groups, [](const Group& group) { return group.vertices.empty(); });
   return unused;
 }
 
@@ -140,35 +176,10 @@ std::string parts_sentence(const std::string& file, const Scene& scene) {
                                  doubled == 1 ? "1 vertex" : fmt::format("{} vertices", doubled)));
 }
 
-std::string point_in_words(const Eigen::Vector3d& x) {
-  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x[0], x[1], x[2]);
-}
-
-void pin(const TomlTable& box, std::vector<Node>& nodes) {
-  box.allow_keys({"min", "max", "nodes"});
-  if (box.has("nodes")) {
-    if (box.has("min") || box.has("max"))
-      box.fail("nodes", "allowed is either nodes, or min and max");
-    for (const std::size_t node : box.nodes("nodes", nodes.size())) nodes[node].pinned = true;
-    return;
-  }
-  const Eigen::Vector3d low = box.vector("min", 3), high = box.vector("max", 3);
-  if ((low.array() > high.array()).any()) box.refuse("max", "arrays that are nowhere below min");
-  bool catches_any = false;
-  Eigen::AlignedBox3d mesh;
-  for (Node& node : nodes) {
-    const auto x = node.position.array();
-    const bool is_inside = (low.array() <= x && x <= high.array()).all();
-    node.pinned |= is_inside;
-    catches_any |= is_inside;
-    mesh.extend(node.position);
-  }
-  if (!catches_any)
-    box.fail("min",
-             fmt::format("the box {} to {} holds no vertex of the mesh, which with its scale spans "
-                         "{} to {}; allowed are boxes that hold one",
-                         point_in_words(low), point_in_words(high), point_in_words(mesh.min()),
-                         point_in_words(mesh.max())));
+void pin(const TomlTable& choice, const Mesh& mesh, Scene& scene) {
+  choice.allow_keys({"min", "max", "nodes", "group", "dimension"});
+  for (const std::size_t node : chosen_nodes(choice, scene, mesh.groups))
+    scene.nodes[node].pinned = true;
 }
 
 }  // namespace
@@ -176,7 +187,7 @@ void pin(const TomlTable& box, std::vector<Node>& nodes) {
 void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
               const SceneLimits& limits, Scene& scene) {
   table.allow_keys({"file", "scale", "rotation", "shift", "weld", "velocity", "stiffness",
-                    "bending_stiffness", "node_mass", "total_mass", "pin"});
+                    "bending_stiffness", "node_mass", "total_mass", "density", "pin", "load"});
   const double scale = table.number_or(1, "scale", positive);
   const double stiffness = table.number("stiffness", not_negative);
   const double bending_stiffness = table.number_or(0, "bending_stiffness", not_negative);
@@ -186,23 +197,29 @@ void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const
     table.fail("file", fmt::format("{} has no edge; allowed are meshes with some", file));
   for (const std::string& warning : mesh.warnings)
     scene.warnings.push_back(fmt::format("{}: {}", file, warning));
-  if (const std::size_t unused = leave_out_unused(mesh); unused > 0)
+  require_one_mass(table);
+  place(table, scale, mesh.vertices);
+  std::vector<double> masses = masses_by_density(table, mesh);
+  if (const std::size_t unused = leave_out_unused(mesh, masses); unused > 0)
     scene.warnings.push_back(unused_sentence(file, unused));
   const auto bending = bending_pairs(table, mesh);
   const SceneSize size{mesh.vertices.size(), mesh.edges.size() + bending.size()};
   require_within(limits, size, table.place());
 
-  const double mass = mass_of_each(table, mesh.vertices.size());
+  if (table.has("node_mass")) masses.assign(size.nodes, table.number("node_mass", not_negative));
+  if (table.has("total_mass"))
+    masses.assign(size.nodes,
+                  table.number("total_mass", not_negative) / static_cast<double>(size.nodes));
   scene.nodes.reserve(size.nodes);
   scene.springs.reserve(size.springs);
-  place(table, scale, mesh.vertices);
   const Eigen::Vector3d velocity = table.vector_or_zero("velocity", 3);
-  for (const Eigen::Vector3d& x : mesh.vertices)
-    scene.nodes.push_back({.position = x, .velocity = velocity, .mass = mass});
+  for (std::size_t i = 0; i < size.nodes; ++i)
+    scene.nodes.push_back({.position = mesh.vertices[i], .velocity = velocity, .mass = masses[i]});
   add_springs(mesh.edges, stiffness, scene);
   add_springs(bending, bending_stiffness, scene);
   scene.faces = std::move(mesh.faces);
-  for (const TomlTable& box : table.tables("pin")) pin(box, scene.nodes);
+  for (const TomlTable& choice : table.tables("pin")) pin(choice, mesh, scene);
+  add_loads(table, mesh.groups, scene);
   if (const std::string parts = parts_sentence(file, scene); !parts.empty())
     scene.warnings.push_back(parts);
 }

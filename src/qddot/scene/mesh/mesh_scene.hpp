@@ -11,7 +11,8 @@ namespace qddot {
 
 // Adds the nodes, springs and faces of a scene file's [mesh] table, in three dimensions. Every edge
 // is a spring at its own length. Every end of an edge is a node, in the order of the file. It is
-// pinned if a [[mesh.pin]] names it or has it in a box (in the scene's coordinates [m]). Other
+// pinned if a [[mesh.pin]] chooses it, and has the loads of each [[mesh.load]] that does (see
+// node_choice.hpp; boxes are in the scene's coordinates [m]). Other
 // vertices are left out, with a warning; another one tells of parts that no edge joins. The mesh
 // file is sought in `folder` and read by `read`. Throws InvalidInput for any mistake, also for a
 // mesh without edges and a box without vertices.

@@ -53,6 +53,10 @@ void weld(const std::vector<std::size_t>& to, Mesh& mesh) {
   move(mesh.triangles);
   move(mesh.tetrahedra);
   move(mesh.faces);
+  for (std::size_t& corner : mesh.cells.all_corners()) corner = number[to[corner]];
+  for (Group& group : mesh.groups) {
+    for (std::size_t& vertex : group.vertices) vertex = number[to[vertex]];
+  }
 }
 
 }  // namespace qddot::mesh

@@ -20,7 +20,7 @@ Tolerances tolerances_of(const std::vector<Eigen::Vector3d>& x,
 
 BoundedEnergy potential_of(std::span<const Spring> springs, const std::vector<Eigen::Vector3d>& x,
                            const std::vector<double>& mass, const Eigen::Vector3d& gravity,
-                           const Tolerances& tolerances) {
+                           const std::vector<Eigen::Vector3d>& load, const Tolerances& tolerances) {
   BoundedEnergy sum;
   double sizes = 0;
   for (const Spring& spring : springs) {
@@ -35,11 +35,13 @@ BoundedEnergy potential_of(std::span<const Spring> springs, const std::vector<Ei
         underflow * (1 + strained * strained);
     sizes += energy;
   }
-  const double farthest = largest_coordinate(x), pull = gravity.norm();
+  const double farthest = largest_coordinate(x), weight = gravity.norm();
   for (std::size_t i = 0; i < x.size(); ++i) {
-    sum.value -= mass[i] * gravity.dot(x[i]);
-    sum.error += mass[i] * pull * tolerances.place + underflow * (1 + pull) * (1 + farthest);
-    sizes += 4 * mass[i] * pull * farthest;
+    const double pull = mass[i] * weight + load[i].norm();
+    sum.value -= mass[i] * gravity.dot(x[i]) + load[i].dot(x[i]);
+    sum.error +=
+        pull * tolerances.place + underflow * (1 + weight + load[i].norm()) * (1 + farthest);
+    sizes += 4 * pull * farthest;
   }
   sum.error += (rounding + static_cast<double>(springs.size() + x.size()) * eps) * sizes;
   return sum;

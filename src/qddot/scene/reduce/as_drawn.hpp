@@ -26,15 +26,16 @@ struct Tolerances {
 Tolerances tolerances_of(const std::vector<Eigen::Vector3d>& x,
                          const std::vector<Eigen::Vector3d>& v);
 
-// V of springs between nodes at x and of the masses' weights: the sum as drawn, and how far another
-// way of adding may be from it. Both ends, the rest length and its sum with others may be off by
-// the tolerance of positions. Then s = l - l0 is off by D, four times that and rounding, and
+// V of springs between nodes at x, of the masses' weights and of loads: the sum as drawn, and how
+// far another way of adding may be from it. Both ends, the rest length and its sum with others may
+// be off by the tolerance of positions. Then s = l - l0 is off by D, four times that and rounding,
+// and
 //   V by no more than |tau| D + 1/2 tau'(|s| + D) D^2 (Taylor; tau' grows with |s|).
-// Laws, masses and gravity may be off by `rounding` (see drawn_part.hpp). A sum of n terms may be
-// off by n eps of their sizes, each at most as large as at the largest coordinate.
+// Laws, masses, gravity and loads may be off by `rounding` (see drawn_part.hpp). A sum of n terms
+// may be off by n eps of their sizes, each at most as large as at the largest coordinate.
 BoundedEnergy potential_of(std::span<const Spring> springs, const std::vector<Eigen::Vector3d>& x,
                            const std::vector<double>& mass, const Eigen::Vector3d& gravity,
-                           const Tolerances& tolerances);
+                           const std::vector<Eigen::Vector3d>& load, const Tolerances& tolerances);
 
 // T of the masses at velocities v, likewise: off by m |v| D + 1/2 m D^2, with D the tolerance of
 // speeds.

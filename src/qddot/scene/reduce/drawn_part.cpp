@@ -46,9 +46,12 @@ DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
     drawn.x.push_back(node.position);
     drawn.v.push_back(node.pinned ? Eigen::Vector3d::Zero() : node.velocity);
     drawn.mass.push_back(node.pinned ? 0 : node.mass);
+    drawn.load.push_back(node.acting_load());
+    drawn.is_loaded = drawn.is_loaded || !drawn.load.back().isZero(0);
     total_mass += drawn.mass.back();
   }
   if (total_mass == 0) drawn.gravity.setZero();
+  drawn.gravity_noise = rounding * drawn.gravity.norm();
   drawn.origin = local_origin(drawn.x);
   for (Eigen::Vector3d& x : drawn.x) x -= drawn.origin;
 

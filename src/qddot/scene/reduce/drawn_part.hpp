@@ -11,7 +11,7 @@
 namespace qddot::reduce {
 
 // A part of a scene with all that acts on it, numbered anew: its nodes, the pinned nodes at the
-// other ends of its springs, and gravity.
+// other ends of its springs, gravity and loads.
 struct DrawnPart {
   std::vector<std::size_t> nodes{};  // the scene's numbers: free nodes, then pinned ones
   std::size_t free = 0;              // how many are free
@@ -21,9 +21,12 @@ struct DrawnPart {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
   std::vector<double> mass{};             // of all of them; 0 where pinned
+  std::vector<Eigen::Vector3d> load{};    // [N], of all of them; 0 where pinned
+  bool is_loaded = false;                 // whether any of these is not zero
   std::vector<Spring> springs{};          // between numbers of this part
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
+  double gravity_noise = 0;     // the size of gravity [m/s^2] below which it is rounding
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
   bool offers_split = false;    // whether its system is to offer SplitForces
 };

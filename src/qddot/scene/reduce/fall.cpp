@@ -25,22 +25,27 @@ bool has_loose_node(const DrawnPart& drawn) {
 void let_fall(DrawnPart& drawn) {
   if (drawn.free < drawn.nodes.size() || has_loose_node(drawn)) return;
   // Differences to one of the velocities: if all are equal, so is their mean, to the bit.
-  double mass = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double mass = 0, size_of_loads = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), load = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     mass += drawn.mass[i];
     sum += drawn.mass[i] * (drawn.v[i] - drawn.v.front());
+    load += drawn.load[i];
+    size_of_loads += drawn.load[i].norm();
   }
   if (!(mass > 0)) return;
   const Eigen::Vector3d mean = drawn.v.front() + sum / mass;
   if (!mean.allFinite()) return;
-  drawn.fall = {mass, mean, drawn.gravity};
+  const Eigen::Vector3d mean_load = load / mass;
+  if (!mean_load.allFinite()) return;
+  drawn.fall = {mass, mean, drawn.gravity + mean_load};
   for (Eigen::Vector3d& v : drawn.v) v -= mean;
-  drawn.gravity.setZero();
+  drawn.gravity = -mean_load;
+  drawn.gravity_noise = rounding * (size_of_loads / mass);
 }
 
 bool rests(const DrawnPart& drawn) {
-  if (drawn.fall.mass == 0) return false;
+  if (drawn.fall.mass == 0 || drawn.is_loaded) return false;
   const double slow = few_roundings * drawn.fall.velocity.lpNorm<Eigen::Infinity>();
   if (largest_coordinate(drawn.v) > slow) return false;
   const double near =

@@ -7,10 +7,11 @@
 namespace qddot::reduce {
 namespace {
 
-// Whether all positions share coordinate d, and all velocities and gravity are zero in it.
+// Whether all positions share coordinate d, and velocities, gravity and loads are zero in it.
 bool is_shared(const DrawnPart& drawn, int d) {
   const auto rests = [&](const Eigen::Vector3d& v) { return v[d] == 0; };
   return drawn.gravity[d] == 0 && std::ranges::all_of(drawn.v, rests) &&
+         std::ranges::all_of(drawn.load, rests) &&
          std::ranges::all_of(drawn.x, [&](const auto& x) { return x[d] == drawn.x.front()[d]; });
 }
 
@@ -51,11 +52,14 @@ class Span {
 Span span_of(const DrawnPart& drawn) {
   const double noise = rounding * largest_coordinate(drawn.x);
   const double speed_noise = rounding * largest_coordinate(drawn.v);
+  const double load_noise = rounding * largest_coordinate(drawn.load);
   Span span;
   do {
     for (const auto& x : drawn.x) span.offer(x - drawn.x.front(), noise);
     for (const auto& v : drawn.v) span.offer(v, speed_noise);
-    span.offer(drawn.gravity, rounding * drawn.gravity.norm());
+    span.offer(drawn.gravity, drawn.gravity_noise);
+    if (!drawn.is_loaded) continue;
+    for (const auto& load : drawn.load) span.offer(load, load_noise);
   } while (span.take() && span.rank() < 3);
   return span;
 }
@@ -95,8 +99,9 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
 
   // The largest length that does not overflow when squared.
   constexpr double largest = 1e150;
-  for (const double size : {largest_coordinate(drawn.x), largest_coordinate(drawn.v),
-                            drawn.gravity.lpNorm<Eigen::Infinity>()}) {
+  for (const double size :
+       {largest_coordinate(drawn.x), largest_coordinate(drawn.v), largest_coordinate(drawn.load),
+        drawn.gravity.lpNorm<Eigen::Infinity>()}) {
     if (size > largest) return frame;
   }
   const Span span = span_of(drawn);

@@ -30,12 +30,12 @@ struct Frame {
 Eigen::Matrix3d complete(Eigen::Matrix3d axes, int count);
 
 // The smallest subspace in which the part's motion stays. Let all positions (of free nodes and of
-// the pinned ones they are held to), all velocities and gravity lie in a subspace W. A spring pulls
-// along the difference of its ends, so all forces lie in W while all positions do. The components
-// normal to W obey y'' = 0 with y = y' = 0, and stay zero. First, the scene's coordinates are left
-// out that all positions share to the bit and in which nothing moves or pulls. Then, among the
-// others, any plane or line is found that holds everything within rounding. `dimension`: of the
-// scene.
+// the pinned ones they are held to), all velocities, gravity and loads lie in a subspace W. A
+// spring pulls along the difference of its ends, so all forces lie in W while all positions do. The
+// components normal to W obey y'' = 0 with y = y' = 0, and stay zero. First, the scene's
+// coordinates are left out that all positions share to the bit and in which nothing moves or pulls.
+// Then, among the others, any plane or line is found that holds everything within rounding.
+// `dimension`: of the scene.
 //
 // A coordinate that is shared almost, but not to the bit, counts as not shared: the deviation may
 // be there on purpose, to start a buckling.

@@ -114,13 +114,19 @@ std::vector<int> along_springs(const DrawnPart& drawn,
   return order;
 }
 
+// How far places [m], velocities [m/s] and loads [N] may be from the mirrored ones.
+struct Closeness {
+  double place, speed, load;
+};
+
 // Finds mirror planes of a part.
 class MirrorSearch {
  public:
   explicit MirrorSearch(const DrawnPart& drawn)
       : drawn_(drawn),
         tolerance_(rounding * largest_coordinate(drawn.x)),
-        speed_tolerance_(rounding * largest_coordinate(drawn.v)),
+        exact_{tolerance_, rounding * largest_coordinate(drawn.v),
+               rounding * largest_coordinate(drawn.load)},
         places_(drawn.x),
         ends_(drawn.springs),
         neighbours_(drawn.x.size()),
@@ -151,7 +157,7 @@ class MirrorSearch {
   std::optional<std::pair<Plane, Images>> mirror(const Vector3d& direction,
                                                  const std::vector<Images>& earlier) const {
     Plane plane{direction};
-    if (std::abs(direction.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
+    if (std::abs(direction.dot(drawn_.gravity)) > drawn_.gravity_noise) return {};
     center(plane);
     // A principal axis is less accurate than the nodes: to the square root of rounding if two
     // moments are nearly equal. The pairs of nodes that it finds determine it anew.
@@ -159,16 +165,18 @@ class MirrorSearch {
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
       const double extent = largest_coordinate(drawn_.x);
-      const auto roughly =
-          images(plane, std::max(tolerance_, coarse * extent), coarse * extent, {}, {});
+      const auto roughly = images(plane,
+                                  {std::max(tolerance_, coarse * extent), coarse * extent,
+                                   coarse * largest_coordinate(drawn_.load)},
+                                  {}, {});
       if (!roughly || !refine(plane, *roughly)) return {};
       center(plane);
-      if (std::abs(plane.normal.dot(drawn_.gravity)) > rounding * drawn_.gravity.norm()) return {};
+      if (std::abs(plane.normal.dot(drawn_.gravity)) > drawn_.gravity_noise) return {};
     }
     // The image of the first node decides the images of its neighbours. If several nodes are in one
     // place, each of them is tried.
     for (const int first : candidates(plane, order_.front())) {
-      const auto exactly = images(plane, tolerance_, speed_tolerance_, earlier, first);
+      const auto exactly = images(plane, exact_, earlier, first);
       if (exactly && moves_any(*exactly) && maps_springs(*exactly)) {
         return std::pair(plane, *exactly);
       }
@@ -187,17 +195,18 @@ class MirrorSearch {
     plane.offset = low + (high - low) / 2;
   }
 
-  bool are_alike(const Plane& plane, int i, int j, double speed_tolerance) const {
+  bool are_alike(const Plane& plane, int i, int j, const Closeness& near) const {
     const int free = static_cast<int>(drawn_.free);
     return (j < free) == (i < free) &&
            nearly(drawn_.mass[i], drawn_.mass[j], rounding * drawn_.mass[i]) &&
-           (plane.turned(drawn_.v[i]) - drawn_.v[j]).norm() <= speed_tolerance;
+           (plane.turned(drawn_.v[i]) - drawn_.v[j]).norm() <= near.speed &&
+           (plane.turned(drawn_.load[i]) - drawn_.load[j]).norm() <= near.load;
   }
 
   std::vector<int> candidates(const Plane& plane, int i) const {
     std::vector<int> all;
     places_.find(plane.image(drawn_.x[i]), tolerance_, [&](int j) {
-      if (are_alike(plane, i, j, speed_tolerance_)) all.push_back(j);
+      if (are_alike(plane, i, j, exact_)) all.push_back(j);
       return false;
     });
     return all;
@@ -205,15 +214,15 @@ class MirrorSearch {
 
   // The reflection S must commute with the group G of the earlier ones: if i has the image j, then
   // g i has g j for all g in G. This requires that the same g leave i and j in place.
-  std::optional<Images> images(const Plane& plane, double tolerance, double speed_tolerance,
+  std::optional<Images> images(const Plane& plane, const Closeness& near,
                                const std::vector<Images>& earlier, std::optional<int> first) const {
     Images all(drawn_.x.size(), -1);
     const Orbits orbits(earlier);
     for (const int i : order_) {
       if (all[i] >= 0) continue;
-      const int image = places_.find(plane.image(drawn_.x[i]), tolerance, [&](int j) {
+      const int image = places_.find(plane.image(drawn_.x[i]), near.place, [&](int j) {
         return (i != order_.front() || !first || j == *first) && all[j] < 0 &&
-               are_alike(plane, i, j, speed_tolerance) && orbits.are_fixed_alike(i, j) &&
+               are_alike(plane, i, j, near) && orbits.are_fixed_alike(i, j) &&
                neighbours_agree(i, j, all);
       });
       if (image < 0) return {};
@@ -278,7 +287,8 @@ class MirrorSearch {
   }
 
   const DrawnPart& drawn_;
-  double tolerance_, speed_tolerance_;
+  double tolerance_;  // of places and rest lengths
+  Closeness exact_;   // within rounding
   Places places_;
   Ends ends_;
   std::vector<std::vector<int>> neighbours_;  // of each node; empty where no two nodes coincide

@@ -12,11 +12,11 @@ namespace qddot::reduce {
 // Planes (in two dimensions lines, in one points) that mirror a part onto itself, at right angles
 // to each other. Reflection d of the `count` planes changes the sign of coordinate d.
 //
-// Let a reflection S map positions, velocities, masses, pins and springs of a part onto themselves,
-// and gravity to itself. It maps the motion q(t) to one with the same start, which is therefore the
-// same: S q(t) = q(t) for all t. So the nodes on one side determine those on the other, and a node
-// on the plane stays on it. The same holds for the group that several such planes generate. Being
-// at right angles they commute, and each node's images are diag(+-1, ...) of it.
+// Let a reflection S map positions, velocities, masses, loads, pins and springs of a part onto
+// themselves, and gravity to itself. It maps the motion q(t) to one with the same start, which is
+// therefore the same: S q(t) = q(t) for all t. So the nodes on one side determine those on the
+// other, and a node on the plane stays on it. The same holds for the group that several such planes
+// generate. Being at right angles they commute, and each node's images are diag(+-1, ...) of it.
 //
 // If nodes coincide, several permutations of them belong to one reflection. Any will do that maps
 // springs to springs, if those of all reflections commute as the reflections do. Only then does the

@@ -53,7 +53,7 @@ std::vector<bool> joints_of(const DrawnPart& drawn) {
 }  // namespace
 
 Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
-    : origin_(drawn.origin), fall_(drawn.fall) {
+    : origin_(drawn.origin), fall_(drawn.fall), is_loaded_(drawn.is_loaded) {
   Frame frame{.dimension = dimension};
   if (reductions.has(Reduction::dimension)) frame = frame_of(drawn, dimension);
   mirrors_.frame = frame;
@@ -96,6 +96,14 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
     for (int d = 0; d < axes; ++d) network.load[axes * number + d] += drawn.mass[i] * g[d];
     network.constant_energy -= drawn.mass[i] * drawn.gravity.dot(mirrors_.frame.origin);
     energy_of_origin_ -= drawn.mass[i] * drawn.gravity.dot(origin_);
+    if (is_loaded_) {
+      // The force on an original is that on its images, mirrored back.
+      const Eigen::Vector3d load =
+          half.images[i].signs.cwiseProduct(mirrors_.frame.direction(drawn.load[i]));
+      for (int d = 0; d < axes; ++d) network.load[axes * number + d] += load[d];
+      network.constant_energy -= drawn.load[i].dot(mirrors_.frame.origin);
+      energy_of_origin_ -= drawn.load[i].dot(origin_);
+    }
     if (i >= drawn.free) continue;
     nodes_.push_back(drawn.nodes[i]);
     masses_.push_back(drawn.mass[i]);
@@ -110,7 +118,7 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   }
 
   if (network.uses_constant_stiffness && !with_pins) {
-    if (auto straight = straightened(network, initial_.q, initial_.v)) {
+    if (auto straight = straightened(network, initial_.q, initial_.v, is_loaded_)) {
       network = std::move(*straight);
       is_straightened_ = true;
     }

@@ -34,11 +34,12 @@ class Part {
   // Its mirrors, in coordinates from the part's origin.
   const Mirrors& mirrors() const { return mirrors_; }
   const Eigen::Vector3d& origin() const { return origin_; }
-  // The potential energy beside that of the system [J]: -M g.origin.
+  // The potential energy beside that of the system [J]: -(M g + the sum of loads).origin.
   double energy_of_origin() const { return energy_of_origin_; }
   // The scene's numbers of its nodes.
   const std::vector<std::size_t>& nodes() const { return nodes_; }
   std::size_t originals() const { return layout_.size(); }
+  bool is_loaded() const { return is_loaded_; }
   // Whether K is constant though springs on a line have rest lengths (see straight.hpp).
   bool is_straightened() const { return is_straightened_; }
 
@@ -99,7 +100,7 @@ class Part {
   std::vector<Unknowns> layout_;  // of the originals
   std::unique_ptr<System> system_;
   State initial_;
-  bool is_straightened_ = false;
+  bool is_straightened_ = false, is_loaded_ = false;
 };
 
 }  // namespace qddot::reduce

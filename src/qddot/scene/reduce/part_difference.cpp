@@ -22,7 +22,7 @@ std::optional<std::string> Part::difference_from(const DrawnPart& drawn) const {
     return instead_of("the kinetic energy at the start", own, t.value, "J");
   }
   const BoundedEnergy v =
-      potential_of(drawn.springs, drawn.x, drawn.mass, drawn.gravity, tolerances);
+      potential_of(drawn.springs, drawn.x, drawn.mass, drawn.gravity, drawn.load, tolerances);
   if (const double own = system_->potential(initial_.q); differs(v, own)) {
     return instead_of("the potential energy at the start", own, v.value, "J");
   }

@@ -130,9 +130,10 @@ std::vector<PartMembers> Reduced::divide(const std::vector<Spring>& springs,
     const std::size_t first = members.nodes.front();
     if (is_condensed[first]) continue;  // it is on no spring any more
     if (members.springs.empty() && reductions.has(Reduction::free_flight)) {
-      const bool is_heavy = nodes_[first].mass > 0;
-      flying_.push_back({first, nodes_[first].velocity,
-                         is_heavy ? gravity_ : Eigen::Vector3d(Eigen::Vector3d::Zero())});
+      const Node& node = nodes_[first];
+      Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
+      if (node.mass > 0) acceleration = gravity_ + node.load / node.mass;
+      flying_.push_back({first, node.velocity, acceleration});
       flying.push_back(first);
     } else {
       parts.push_back(std::move(members));
@@ -166,7 +167,9 @@ void Reduced::build(const std::vector<PartMembers>& parts, const std::vector<Spr
   }
   const auto falling = static_cast<std::size_t>(
       std::ranges::count_if(parts_, [](const Part& part) { return part.fall().moves(); }));
-  if (falling + resting_ > 0) report(Reduction::falling, falling_sentence(falling, resting_));
+  const bool is_loaded = std::ranges::any_of(parts_, &Part::is_loaded);
+  if (falling + resting_ > 0)
+    report(Reduction::falling, falling_sentence(falling, resting_, is_loaded));
   for (Finding& finding : findings_of(parts_, systems, dimension_)) {
     findings_.push_back(std::move(finding));
   }
@@ -222,6 +225,7 @@ void Reduced::check(const Scene& scene) const {
   expand(initial_, true, nodes);
   std::vector<Eigen::Vector3d> x, v;
   std::vector<double> mass;
+  std::vector<Eigen::Vector3d> load;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (places[i] != (nodes[i].pinned ? 0 : 1)) {
       throw defect(fmt::format("node {} has {} places", i, places[i]));
@@ -229,10 +233,11 @@ void Reduced::check(const Scene& scene) const {
     x.push_back(nodes[i].position);
     v.push_back(nodes[i].velocity);
     mass.push_back(nodes[i].pinned ? 0 : nodes[i].mass);
+    load.push_back(nodes[i].acting_load());
   }
   const Tolerances tolerances = tolerances_of(x, v);
   const BoundedEnergy t = kinetic_of(v, mass, tolerances);
-  const BoundedEnergy p = potential_of(scene.springs, x, mass, gravity_, tolerances);
+  const BoundedEnergy p = potential_of(scene.springs, x, mass, gravity_, load, tolerances);
   if (differs(t, kinetic(initial_))) throw defect(energy_instead_of(kinetic(initial_), t.value));
   if (differs(p, potential(initial_)))
     throw defect(energy_instead_of(potential(initial_), p.value));
@@ -354,7 +359,7 @@ double Reduced::potential(const State& state) const {
   double energy = system_->potential(state.q) + static_energy_;
   for (const Flying& flying : flying_) {
     const Node& node = nodes_[flying.node];
-    energy -= node.mass * gravity_.dot(node.position + flying.displacement(state.t));
+    energy -= node.mass * flying.gravity.dot(node.position + flying.displacement(state.t));
   }
   for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
     energy -= fall.gravity.dot(moments.first + fall.mass * fall.displacement(state.t));
@@ -366,7 +371,7 @@ double Reduced::energy(const State& state) const {
   double energy = total_energy(*system_, state) + static_energy_;
   for (const Flying& flying : flying_) {
     const Node& node = nodes_[flying.node];
-    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - gravity_.dot(node.position));
+    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - flying.gravity.dot(node.position));
   }
   for_falling(state, [&](const Fall& fall, const Part::Moments& moments) {
     energy += moments.momentum.dot(fall.velocity_at(state.t)) +

@@ -39,11 +39,11 @@ class Reduced {
   std::vector<Index> unknowns_by_part() const;
 
  private:
-  // A node that moves in closed form, x = x0 + v0 t + 1/2 g t^2. It is on no spring, or in a part
-  // that rests in its falling frame.
+  // A node that moves in closed form, x = x0 + v0 t + 1/2 a t^2, a = g + load/m. It is on no
+  // spring, or in a part that rests in its falling frame.
   struct Flying {
     std::size_t node;
-    Eigen::Vector3d velocity, gravity;  // v0 [m/s], g [m/s^2]
+    Eigen::Vector3d velocity, gravity;  // v0 [m/s], a [m/s^2]
 
     Eigen::Vector3d displacement(double t) const { return t * velocity + (0.5 * t * t) * gravity; }
     Eigen::Vector3d velocity_at(double t) const { return velocity + t * gravity; }

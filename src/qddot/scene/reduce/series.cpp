@@ -48,7 +48,8 @@ class Condenser {
     return !nodes_[node].pinned && nodes_[node].mass == 0;
   }
   bool is_joint(std::size_t node) const {
-    if (!is_massless(node) || touching_[node].size() != 2) return false;
+    if (!is_massless(node) || touching_[node].size() != 2 || !nodes_[node].load.isZero(0))
+      return false;
     for (const std::size_t e : touching_[node]) {
       if (springs_[e].law.quartic > 0 || springs_[e].law.stiffness == 0) return false;
     }

@@ -45,11 +45,11 @@ struct Series {
   void place(std::vector<Node>& nodes) const;
 };
 
-// All series of the scene that are exact at its start. They go through massless nodes on two
-// springs without quartic term. Their two ends are at least l0 apart, and the joints end up between
-// these in their order. `springs` loses the springs in series and gains one for each series.
-// `is_on_line`: for each node, whether its part stays on a line. Massless nodes that are left
-// cannot be condensed. Like a drawn spring, the new one is stiff if it has more stiffness than
+// All series of the scene that are exact at its start. They go through massless nodes without load
+// on two springs without quartic term. Their two ends are at least l0 apart, and the joints end up
+// between these in their order. `springs` loses the springs in series and gains one for each
+// series. `is_on_line`: for each node, whether its part stays on a line. Massless nodes that are
+// left cannot be condensed. Like a drawn spring, the new one is stiff if it has more stiffness than
 // `stiff_above`. The ends of a long series feel a soft spring, however stiff each spring is.
 std::vector<Series> condense_series(const std::vector<Node>& nodes, std::vector<Spring>& springs,
                                     std::optional<double> stiff_above,

@@ -83,7 +83,8 @@ constexpr double margin = 1 - 1e-6;
 
 }  // namespace
 
-std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v) {
+std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v,
+                                    bool is_loaded) {
   if (network.dimension != 1) return {};
   const auto springs = springs_of(network);
   if (!may_be_straightened(springs)) return {};
@@ -107,7 +108,7 @@ std::optional<Network> straightened(const Network& network, const Vec& q, const 
     matrix.solve(f, to_equilibrium);
     const double energy = system->kinetic(v) + 0.5 * f.dot(to_equilibrium);
     if (none_turns(energy, coordinates(network, q + to_equilibrium))) return straight;
-  } else if (network.anchors.empty() && network.image_links.empty() &&
+  } else if (!is_loaded && network.anchors.empty() && network.image_links.empty() &&
              network.zero_coordinates.empty()) {
     double energy = relative_kinetic(system->mass(), v);
     double least = INFINITY;

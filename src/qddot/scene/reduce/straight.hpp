@@ -19,11 +19,13 @@ namespace qddot::reduce {
 // V - V(q*) = 1/2 (q - q*)'(-K)(q - q*), and -K >= k_e a a' with d_e = a'q + constant. So e never
 // turns if E - V(q*) is less. If nothing holds the network, -K is singular, and its centre of mass
 // falls freely. The motion about it, seen from its falling frame, has at least the energy 1/2 k
-// l0^2 when a spring turns, as all springs' energies are positive.
+// l0^2 when a spring turns, as all springs' energies are positive. That is so only without loads,
+// which may pull the network apart (`is_loaded`).
 //
 // That is proven for the true motion. A run with too long steps may leave it and turn springs over.
 // Forces, energies and K stay those of the laws, so it goes on as the drawn network does. Code that
 // takes f as linear first asks whether it is (see PiecewiseLinear).
-std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v);
+std::optional<Network> straightened(const Network& network, const Vec& q, const Vec& v,
+                                    bool is_loaded);
 
 }  // namespace qddot::reduce

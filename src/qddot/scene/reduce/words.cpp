@@ -77,14 +77,15 @@ std::string flying_sentence(const std::vector<std::size_t>& nodes) {
                      listed(nodes), nodes.size() == 1 ? "s" : "");
 }
 
-std::string falling_sentence(std::size_t falling, std::size_t resting) {
+std::string falling_sentence(std::size_t falling, std::size_t resting, bool is_loaded) {
   std::vector<std::string> sentences;
   if (falling > 0) {
     const bool one = falling == 1;
     sentences.push_back(fmt::format(
-        "{} without pins fall{} as a whole in closed form: gravity is left out, and what is "
+        "{} without pins fall{} as a whole in closed form: gravity {} left out, and what is "
         "integrated is {} motion about {}",
-        counted(falling, "part"), one ? "s" : "", one ? "its" : "their",
+        counted(falling, "part"), one ? "s" : "",
+        is_loaded ? "and the acceleration by all loads together are" : "is", one ? "its" : "their",
         one ? "the centre of mass" : "the centres of mass"));
   }
   if (resting > 0) {
@@ -128,6 +129,7 @@ std::vector<Finding> findings_of(const std::vector<Part>& parts,
         return fmt::format(
             "{} lie in the {}: {} coordinate{} a node",
             part.fall().moves() ? "positions, and velocities about the centre of mass,"
+            : part.is_loaded()  ? "positions, velocities, gravity and loads"
                                 : "positions, velocities and gravity",
             subspace(part, dimension), frame.dimension, frame.dimension == 1 ? "" : "s");
       });

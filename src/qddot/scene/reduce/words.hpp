@@ -17,7 +17,8 @@ std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_
 std::string flying_sentence(const std::vector<std::size_t>& nodes);
 // Parts without pins: `falling` ones are integrated about their centres of mass, `resting` ones are
 // at rest about theirs.
-std::string falling_sentence(std::size_t falling, std::size_t resting);
+// Loads act on some of all parts if `is_loaded`.
+std::string falling_sentence(std::size_t falling, std::size_t resting, bool is_loaded);
 std::string parts_sentence(std::size_t parts);
 // A sentence that says which reduction was left out of a part because it changed the part, and how.
 std::string mistaken_sentence(const std::string& difference);
