@@ -6,6 +6,7 @@ import { drawEnergies } from "./energies.js";
 import { drawFailures } from "./failures.js";
 import "./legend.js";
 import { drawMotion, printMotion } from "./motion.js";
+import { drawPhase } from "./phase.js";
 import { allRuns, choose, onChoice, ordinates, report, state } from "./report.js";
 import { drawRun } from "./run.js";
 import { words } from "./words.js";
@@ -25,6 +26,7 @@ function drawCharts() {
   drawChart();
   drawFailures();
   drawEnergies();
+  drawPhase();
 }
 
 // Charts follow the width that they have: in another window, on a turned screen, on paper.
@@ -80,10 +82,11 @@ onChoice((changed) => {
   else moveRing();
   drawFailures();
   if (has("run", "column")) drawRun();
-  if (has("run")) {
+  if (has("run", "compared")) {
     drawEnergies();
-    drawMotion();
+    drawPhase();
   }
+  if (has("run", "compared", "together")) drawMotion();
 });
 
 // The answers come to the screen first: the rest waits for the frame after.
