@@ -1,7 +1,7 @@
 // The head of the page and the table of answers: which run to take at each accuracy.
 import { byId, element } from "./element.js";
 import { named } from "./marks.js";
-import { allRuns, knobOf, methods, onChoice, points, report, state, visit } from "./report.js";
+import { allRuns, isStudy, knobOf, methods, onChoice, points, report, state, visit } from "./report.js";
 import { words } from "./words.js";
 
 const table = byId("answers-table").querySelector("table");
@@ -104,17 +104,19 @@ function mark() {
 document.title = `${report.title} – qddot report`;
 const many = `${words.things(methods.length, "method")}, ${words.things(allRuns.length, "run")}`;
 const span = report.until === null ? "" : ` over ${words.exact(report.until)} s of motion`;
-byId("lead").append(`${many}${span}: which reaches an accuracy in the least time?`);
+const question = isStudy ? "which reaches an accuracy in the least time" : "how do they move";
+byId("lead").append(`${many}${span}: ${question}?`);
 byId("notes").append(...report.notes.map((note) => element("p.note", note)));
 const kind =
   report.judged_by === "energy" ? "energy error on the way" : "relative position error at the end";
 byId("answers-about").append(
   `The fastest run of all whose ${kind} is at most the accuracy. Choose a row to see its run.`,
 );
-byId("answers-rows").append(...grouped(report.answers).map(row));
-table.hidden = !report.answers.length;
+const groups = grouped(report.answers ?? []);
+byId("answers-rows").append(...groups.map(row));
+table.hidden = !groups.length;
 byId("no-answers").hidden = !table.hidden;
 if (report.answers_note) byId("answers-table").append(element("p.about", report.answers_note));
-byId("answers").hidden = false;
+byId("answers").hidden = !isStudy;
 mark();
 onChoice(mark);

@@ -123,7 +123,8 @@ function wordsOf(run) {
 
 // The same among others in one view, which they must not hide.
 function shortWordsOf({ run, color }) {
-  const stop = stopWords(run);
+  const isWhole = run.outcome === "reached_end";
+  const stop = isWhole ? stopWords(run) : `stopped at t = ${words.seconds(run.t_reached)}`;
   const name = run.role === "reference" ? `${run.label}, for the reference` : run.label;
   return element("div", keySign(color), name, stop && [" ", element("span.view-stop", stop)]);
 }

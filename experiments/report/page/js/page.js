@@ -7,7 +7,7 @@ import { drawFailures } from "./failures.js";
 import "./legend.js";
 import { drawMotion, printMotion } from "./motion.js";
 import { drawPhase } from "./phase.js";
-import { allRuns, choose, onChoice, ordinates, report, state } from "./report.js";
+import { allRuns, choose, isStudy, onChoice, ordinates, report, state } from "./report.js";
 import { drawRun } from "./run.js";
 import { words } from "./words.js";
 
@@ -66,7 +66,8 @@ function drawAll() {
     ordinates.map((column) => [column, column === "time_s" ? "time" : words.plain(column)]),
     "ordinate",
   );
-  for (const id of ["chart", "run"]) byId(id).hidden = allRuns.length === 0;
+  byId("chart").hidden = !isStudy || allRuns.length === 0;
+  byId("run").hidden = allRuns.length === 0;
   if (allRuns.length) {
     drawRun();
     drawCharts();

@@ -5,6 +5,8 @@ import { isKnown, words } from "./words.js";
 
 export const report = JSON.parse(byId("report").textContent);
 export const points = report.points;
+/** Whether the page is of a study, with a chart and answers, and not of motions alone. */
+export const isStudy = report.answers !== null;
 export const methods = report.methods;
 
 /** All runs, as places in the columns of `points`. */
@@ -79,7 +81,7 @@ export const ordinates = [
 
 // The first answer whose motion was kept; else the first run with a motion, the first answer, any.
 function openingRun() {
-  const answers = report.answers.map(({ point }) => point).filter((point) => point !== null);
+  const answers = (report.answers ?? []).map(({ point }) => point).filter((point) => point !== null);
   const kept = keptRuns.map(({ point }) => point);
   const known = answers.find((point) => kept.includes(point));
   return known ?? kept[0] ?? answers[0] ?? allRuns[0] ?? null;
@@ -99,11 +101,11 @@ function addressed(hash) {
   const found = {};
   const run = runNamed(given.get("run") ?? "");
   if (run !== undefined) found.run = run;
-  found.compared = given
-    .getAll("with")
-    .map(runNamed)
-    .filter((point) => point !== undefined);
-  found.together = given.get("views") === "one";
+  if (run !== undefined) {
+    const others = given.getAll("with").map(runNamed);
+    found.compared = others.filter((point) => point !== undefined);
+    found.together = given.get("views") === "one";
+  }
   if (report.quantities.some(({ column }) => column === given.get("error")))
     found.column = given.get("error");
   if (ordinates.includes(given.get("against"))) found.ordinate = given.get("against");
@@ -115,8 +117,9 @@ const opening = {
   run: openingRun(),
   column: report.quantities[0].column,
   ordinate: "time_s",
-  compared: [],
-  together: false,
+  // Few motions are best seen together.
+  compared: isStudy ? [] : keptRuns.slice(1, 5).map(({ point }) => point),
+  together: !isStudy,
   ...addressed(location.hash),
 };
 

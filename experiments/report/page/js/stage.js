@@ -46,10 +46,13 @@ function thickLines(springs, width, color) {
 const upwards = (up) => (up ? new THREE.Vector3(...up) : new THREE.Vector3(0, 0, 1));
 
 // Turns a direction that is told for z upwards.
-const turned = (direction, up) =>
-  direction.applyQuaternion(
-    new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), upwards(up)),
-  );
+function turned(direction, up) {
+  const [z, to] = [new THREE.Vector3(0, 0, 1), upwards(up)];
+  const axis = z.clone().cross(to);
+  // Upside down, any axis across will do.
+  if (axis.length() === 0) axis.set(1, 0, 0);
+  return direction.applyAxisAngle(axis.normalize(), z.angleTo(to));
+}
 
 /** The body of `nodes` nodes: springs as lines, faces shaded, nodes as points where they are few;
     update() draws its positions and colours (both nodes x 3) from then on. */
