@@ -62,7 +62,8 @@ def main(arguments):
     try:
         return status_of(show, options(arguments))
     except Refused as refusal:
-        print(str(refusal).replace("simulate: ", "motion: ", 1), file=sys.stderr)
+        words = str(refusal).replace("simulate: ", "motion: ", 1)
+        print(words.replace("--method:", "--methods:", 1), file=sys.stderr)
         return 2
 
 
