@@ -84,12 +84,14 @@ nlohmann::json provenance(const std::vector<std::string>& command_line) {
 
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& scene) {
   nlohmann::json origin = provenance(command_line);
+  const std::vector<double> gravity(scene.gravity.begin(), scene.gravity.begin() + scene.dimension);
   const auto stiff_above = scene.stiff_above ? nlohmann::json(*scene.stiff_above) : nullptr;
   origin["scene"] = {{"name", scene.name},
                      {"hash", content_hash(scene)},
                      {"dimension", scene.dimension},
                      {"nodes", scene.nodes.size()},
                      {"springs", scene.springs.size()},
+                     {"gravity", gravity},
                      {"stiff_above", stiff_above}};
   return origin;
 }

@@ -72,9 +72,9 @@ class Framing {
 // the start, the faces and all springs.
 std::unique_ptr<MotionFile> open_pc2(const std::string& path, const Scene& start, Framing framing);
 
-// A motion in the VTKHDF 2.0 layout of PolyData over time, and an .xdmf beside it. HDF5 is not made
-// for several threads: one at a time may work on files of this kind.
+// A motion in the VTKHDF 2.0 layout of PolyData over time, and for all readers an .xdmf beside it.
+// HDF5 is not made for several threads: one at a time may work on files of this kind.
 std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& start,
-                                        Framing framing, bool has_reference);
+                                        Framing framing, bool has_reference, Readers readers);
 
 }  // namespace qddot::motion_files

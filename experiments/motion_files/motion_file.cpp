@@ -48,14 +48,14 @@ Fields fields_named(const std::vector<std::string>& names, const std::string& pa
 
 std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
                                         const ReducedScene& scene, bool has_reference,
-                                        const Fields& fields) {
+                                        const Fields& fields, Readers readers) {
   files_of_motion(path, "motion");
   Framing framing(start, scene, is_pc2(path) ? no_fields : fields);
   if (!framing.of(scene.initial(), nullptr))
     throw InvalidInput(fmt::format(
         "{}: the scene starts with numbers beyond 32-bit floats, which end at 3.4e38", path));
   if (is_pc2(path)) return open_pc2(path, start, std::move(framing));
-  return open_vtkhdf(path, start, std::move(framing), has_reference);
+  return open_vtkhdf(path, start, std::move(framing), has_reference, readers);
 }
 
 }  // namespace qddot::motion_files

@@ -45,6 +45,11 @@ std::vector<std::string> files_of_motion(const std::string& path, const std::str
 Fields fields_named(const std::vector<std::string>& names, const std::string& path,
                     const std::string& option);
 
+// Who a .vtkhdf is for: all readers of HDF5 and XDMF, by single frames in /Frames and an .xdmf
+// beside it; or those of VTKHDF over time alone. Single frames of few nodes are twenty times as
+// large as their numbers.
+enum class Readers { all, of_vtkhdf };
+
 // Opens the files of a motion in the format that the path's ending names: .vtkhdf (with an .xdmf
 // beside it) or .pc2 (with an .obj). `start`: the scene as its motion starts; `scene`: that scene
 // reduced, which must outlive the file; `has_reference`: whether add gets one. Throws InvalidInput
@@ -52,6 +57,6 @@ Fields fields_named(const std::vector<std::string>& names, const std::string& pa
 // nodes, or the start exceeds 32-bit floats.
 std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
                                         const ReducedScene& scene, bool has_reference = false,
-                                        const Fields& fields = {});
+                                        const Fields& fields = {}, Readers readers = Readers::all);
 
 }  // namespace qddot::motion_files

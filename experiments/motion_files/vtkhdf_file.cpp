@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -166,17 +167,17 @@ struct Stream {
 class VtkhdfFile final : public MotionFile {
  public:
   VtkhdfFile(const std::vector<std::string>& files, const Scene& start, Framing framing,
-             bool has_reference)
+             bool has_reference, Readers readers)
       : framing_(std::move(framing)),
         file_(files[0], {}, files[2]),
-        xdmf_(files[1], xdmf_beginning),
         sidecar_(files[2]),
         has_reference_(has_reference) {
+    if (readers == Readers::all) xdmf_.emplace(files[1], xdmf_beginning);
     trying([&] {
       const Cells cells = cells_of(start);
       hdf5_ = hdf5::new_file(file_.unfinished_path());
       root_ = hdf5::new_group(hdf5_, "VTKHDF");
-      frames_ = hdf5::new_group(hdf5_, "Frames");
+      if (xdmf_) frames_ = hdf5::new_group(hdf5_, "Frames");
       write_topology(cells, start.nodes.size());
       open_streams(start.nodes.size(), cells.count(), framing_.wanted());
     });
@@ -200,7 +201,7 @@ class VtkhdfFile final : public MotionFile {
       for (Stream& stream : streams_) stream.out.complete();
       write_full();
       write_steps();
-      for (std::size_t k = 0; k < times_.size(); ++k) {
+      for (std::size_t k = 0; xdmf_ && k < times_.size(); ++k) {
         const Handle frame = hdf5::new_group(frames_, frame_name(k));
         for (const Stream& stream : streams_) stream.out.show_frame(frame, stream.name, k);
       }
@@ -208,16 +209,21 @@ class VtkhdfFile final : public MotionFile {
       for (Handle* handle : {&fields_of_cells_, &fields_of_nodes_, &frames_, &root_, &hdf5_})
         handle->close();
     });
-    xdmf_.write(xdmf_text(about_, times_));
+    if (xdmf_) xdmf_->write(xdmf_text(about_, times_));
     sidecar_.write(kit::text_of_sidecar(origin));
-    for (WholeFile* file : {&file_, &xdmf_, &sidecar_}) file->complete();
+    for (WholeFile* file : files()) file->complete();
   }
 
   void commit() override {
-    for (WholeFile* file : {&file_, &xdmf_, &sidecar_}) file->commit();
+    for (WholeFile* file : files()) file->commit();
   }
 
  private:
+  std::vector<WholeFile*> files() {
+    if (!xdmf_) return {&file_, &sidecar_};
+    return {&file_, &*xdmf_, &sidecar_};
+  }
+
   template <class Call>
   void trying(const Call& call) {
     try {
@@ -244,6 +250,7 @@ class VtkhdfFile final : public MotionFile {
     write_cells(root_, "Lines", joined(cells.lines), 2);
     write_cells(root_, "Polygons", joined(cells.triangles), 3);
     write_cells(root_, "Strips", {}, 1);
+    if (!xdmf_) return;
     const Numbers numbers = mixed(cells);
     hdf5::write(frames_, "cells", numbers);
     about_ = {.file = std::filesystem::path(file_.path()).filename().string(),
@@ -300,7 +307,8 @@ class VtkhdfFile final : public MotionFile {
   }
 
   Framing framing_;
-  WholeFile file_, xdmf_, sidecar_;
+  WholeFile file_, sidecar_;
+  std::optional<WholeFile> xdmf_;  // goes with single frames in frames_, for all readers
   bool has_reference_;
   Handle hdf5_, root_, frames_, fields_of_nodes_, fields_of_cells_;
   std::vector<Stream> streams_;  // closed before the file, as it is declared after it
@@ -311,14 +319,14 @@ class VtkhdfFile final : public MotionFile {
 }  // namespace
 
 std::unique_ptr<MotionFile> open_vtkhdf(const std::string& path, const Scene& start,
-                                        Framing framing, bool has_reference) {
+                                        Framing framing, bool has_reference, Readers readers) {
   if (!can_be_named(std::filesystem::path(path).filename().string()))
     throw InvalidInput(
         fmt::format("{}: the .xdmf beside it cannot name that file; allowed are names in UTF-8 "
                     "without control characters, colons and blanks at their ends",
                     path));
   return std::make_unique<VtkhdfFile>(files_of_motion(path, "motion"), start, std::move(framing),
-                                      has_reference);
+                                      has_reference, readers);
 }
 
 }  // namespace qddot::motion_files

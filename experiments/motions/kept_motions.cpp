@@ -184,7 +184,8 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
     kit::require_replaceable(file, {}, kit::sidecar_of(own));
   }
   const bool is_compared = !is_reference && !reference_.empty();
-  const auto file = motion_files::open_motion(path, start_, scene_, is_compared);
+  const auto file = motion_files::open_motion(path, start_, scene_, is_compared, {},
+                                              motion_files::Readers::of_vtkhdf);
   std::size_t frames = 0;
   for (; frames < states.size(); ++frames) {
     const State& state = states[frames];
@@ -195,7 +196,9 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
   file->complete(origin_);
   file->commit();
   for (const std::string& part : motion_files::files_of_motion(path, "file")) {
-    bytes_ += static_cast<double>(std::filesystem::file_size(part));
+    std::error_code is_missing;
+    const auto bytes = std::filesystem::file_size(part, is_missing);
+    if (!is_missing) bytes_ += static_cast<double>(bytes);
   }
   return {place + file_name, frames};
 }

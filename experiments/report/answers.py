@@ -1,5 +1,6 @@
 """The page's answers: at each accuracy the fastest run, by what margin, and why there is none."""
 
+import itertools
 import math
 
 from style import family_look
@@ -27,6 +28,13 @@ def answer(row):
         "warning": "; ".join(row["warnings"]) or None,
         "why": row["why_empty"],
     }
+
+
+def runs_of_answers(found):
+    """The answers in lists: one for each run that is the fastest at several accuracies in turn, or
+    reason that there is none."""
+    groups = itertools.groupby(found, lambda one: (one["point"], one["why"]))
+    return [list(group) for _, group in groups]
 
 
 def answers(study):

@@ -21,14 +21,12 @@ def family_entry(family):
     }
 
 
-def methods_part(study):
-    """The page's `families` and `methods`, the latter in the order of the points."""
-    known = {run.method: (run.family, run.stock_of) for run in study.runs}
-    strong = strong_methods(study.record.judged)
+def method_entries(known, strong, lines):
+    """The page's `families` and `methods` for {name: (family, stock_of)}; `lines`: what each method
+    is, by name."""
     looks = looks_by_prominence(known, strong)
-    notes = study.method_notes
     families, methods = {}, []
-    for method, (family, stock_of) in known.items():
+    for method, (family, _) in known.items():
         drawn = looks[method].family
         name = "stock" if drawn is STOCK else family
         families.setdefault(name, family_entry(drawn))
@@ -40,7 +38,14 @@ def methods_part(study):
                 "text_color": looks[method].text_color,
                 "marker": looks[method].marker,
                 "strong": method in strong,
-                "line": look(notes.get(method), "summary"),
+                "line": lines.get(method),
             }
         )
     return {"families": list(families.values()), "methods": methods}
+
+
+def methods_part(study):
+    """The page's `families` and `methods`, the latter in the order of the points."""
+    known = {run.method: (run.family, run.stock_of) for run in study.runs}
+    lines = {name: look(note, "summary") for name, note in study.method_notes.items()}
+    return method_entries(known, strong_methods(study.record.judged), lines)

@@ -53,6 +53,17 @@ def box_of(motions, first_is_reference):
     return low, float((high - low).max()) or 1.0
 
 
+def against(gravity):
+    """The unit vector (3,) against gravity, as a list; None where there is no gravity, or it is not
+    known."""
+    if not isinstance(gravity, list) or not 0 < len(gravity) <= 3:
+        return None
+    if not all(isinstance(one, (int, float)) and math.isfinite(one) for one in gravity):
+        return None
+    size = math.hypot(*gravity)
+    return [-one / size + 0.0 for one in [*gravity, 0, 0][:3]] if 0 < size < math.inf else None
+
+
 def unmoved(motion):
     """The nodes that are at one place in all frames; none where there is one frame only."""
     if len(motion.times) < 2:

@@ -69,6 +69,11 @@ class MotionFile:
         name = "PointData/distance_to_reference"
         return self.rows(name, frames) if name in self.file["VTKHDF"] else None
 
+    def velocities(self, frames):
+        """Velocities (frames, nodes, 3) [m/s]; None where the file has none."""
+        name = "PointData/velocity"
+        return self.rows(name, frames) if name in self.file["VTKHDF"] else None
+
     def rows(self, name, frames):
         """A data set's rows of these frames, by frame and node. Raises BadInput where they are
         damaged."""
@@ -109,9 +114,10 @@ def open_motion(directory, name):
         if not np.isfinite(times).all():
             raise BadInput("a time is no number")
         nodes = points // len(times)
-        distances = root.get("PointData/distance_to_reference")
-        if distances is not None and distances.shape != (points,):
-            raise BadInput("its distances do not fit its points")
+        for field, shape in (("distance_to_reference", (points,)), ("velocity", (points, 3))):
+            data = root.get(f"PointData/{field}")
+            if data is not None and data.shape != shape:
+                raise BadInput(f"its {field} does not fit its points")
         cells = (
             groups_of(root, name, size, nodes) for name, size in (("Lines", 2), ("Polygons", 3))
         )

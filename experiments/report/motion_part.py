@@ -1,6 +1,7 @@
 """The motions of a page: what of the files in motions/ it holds, in how many bytes."""
 
 import json
+import math
 import os
 from dataclasses import dataclass
 
@@ -8,7 +9,7 @@ from budget import fit
 from commands import study_options
 from encoding import distances_blob, index_blob, positions_blob, quantised
 from measurements import BadInput
-from motion_box import box_of, unmoved
+from motion_box import against, box_of, unmoved
 from motion_files import open_motion, read_energies, read_motion_rows
 from study_folder import look, read_json
 
@@ -88,6 +89,9 @@ class Encoder:
     def __init__(self, study, origin, opened, energies):
         self.opened = opened
         self.energies = energies
+        self.dimension = look(study.sidecar, "scene", "dimension") or 3
+        self.pinned = unmoved(opened[0][1])
+        self.mass = only_mass(opened[0][1].nodes, self.pinned)
         first_is_reference = opened[0][0]["role"] == "reference"
         self.low, self.size = box_of([motion for _, motion in opened], first_is_reference)
         # The largest displacement [m], by which distances are divided; None where it is not known
@@ -107,21 +111,57 @@ class Encoder:
         distances = motion.distances(frames) if is_compared else None
         point = self.points.get((row["method"], row["knob"], row["value"]))
         label = row["method"] or row["role"]
+        times = motion.times[list(frames)].tolist()
         entry = {name: row[name] for name in ("why", "outcome", "t_reached", "seconds")}
         entry |= {
             "role": "reference" if row["role"] == "reference" else "run",
             "point": point,
             "label": label if point is None else f"{label} at {self.knobs[point]}",
-            "times": motion.times[list(frames)].tolist(),
-            "energy": self.energies.get(row["file"]),
+            "times": times,
+            "energy": told_energy(self.energies.get(row["file"]), times),
             "left_box": left_box,
             "positions": f"p{run}",
             "distances": None if distances is None else f"d{run}",
         }
+        if self.mass is not None:
+            entry["phase"] = self.phase(motion, frames)
         blobs = {f"p{run}": positions_blob(steps)}
         if distances is not None:
             blobs[f"d{run}"] = distances_blob(distances / self.unit)
         return EncodedRun(entry, blobs)
+
+
+    def phase(self, motion, frames):
+        """The positions [m] and velocities [m/s] of the only mass, a list for each axis; None where
+        the file has no velocities."""
+        both = {"position": motion.positions(frames), "velocity": motion.velocities(frames)}
+        if both["velocity"] is None:
+            return None
+        return {
+            name: [few_digits(row) for row in values[:, self.mass].T[: self.dimension]]
+            for name, values in both.items()
+        }
+
+
+def told_energy(energy, times):
+    """The energies of a run, if there are any, without the potential, which is the total less the
+    kinetic one, and without times that are those of the frames."""
+    if energy is None:
+        return None
+    told = {name: energy[name] for name in ("kinetic", "total")}
+    is_at_frames = [float(f"{time:.7g}") for time in times] == energy["t"]
+    return told if is_at_frames else told | {"t": energy["t"]}
+
+
+def few_digits(values):
+    """The numbers as floats of five digits; None for what is no number."""
+    return [float(f"{one:.5g}") if math.isfinite(one) else None for one in values.tolist()]
+
+
+def only_mass(nodes, pinned):
+    """The number of the one node that moves; None where others do, too."""
+    moving = set(range(nodes)) - set(pinned) if nodes - len(pinned) == 1 else ()
+    return next(iter(moving), None)
 
 
 def pack(study, origin, opened, energies, notes, room):
@@ -132,8 +172,7 @@ def pack(study, origin, opened, energies, notes, room):
     if len(first.faces):
         blobs["f0"] = index_blob(first.faces)
     room -= sum(map(len, blobs.values()))
-    pinned = unmoved(first)
-    room -= len(json.dumps(pinned))
+    room -= len(json.dumps(encoder.pinned))
     counts = [len(motion.times) for _, motion in opened]
     runs = fit(counts, room, encoder.encode)
     if runs is None:
@@ -143,11 +182,13 @@ def pack(study, origin, opened, energies, notes, room):
         blobs |= run.blobs
     entries = [run.entry for run in runs]
     part = {
-        "dimension": look(study.sidecar, "scene", "dimension") or 3,
+        "dimension": encoder.dimension,
+        # Against gravity; None where there is none.
+        "up": against(look(study.sidecar, "scene", "gravity")),
         "nodes": first.nodes,
         "springs": "s0",
         "faces": "f0" if "f0" in blobs else None,
-        "pinned": pinned,
+        "pinned": encoder.pinned,
         "low": encoder.low.tolist(),
         "size": encoder.size,
         "distance_unit": encoder.unit,

@@ -10,6 +10,8 @@ from study_folder import cell
 NUMBERS = (
     "t_reached",
     "error_position",
+    "error_velocity",
+    "error_energy",
     "error_energy_max",
     "error_momentum_max",
     "error_modal_shares",
@@ -37,6 +39,22 @@ NAMES = {
     "energy": "energy on the way",
     "momentum": "momenta on the way",
     "modes": "energy in the modes",
+}
+
+# Errors that methods are not judged by: name, axis, subtitle, and what the reference certifies.
+UNJUDGED = {
+    "error_velocity": (
+        "velocities at the end",
+        "relative velocity error",
+        "velocity error at t = T: max over nodes, divided by the largest speed",
+        "certified_velocity",
+    ),
+    "error_energy": (
+        "energy at the end",
+        "relative energy error at the end",
+        "energy error at t = T: |E − E of the reference|, divided by the largest kinetic energy",
+        "certified_energy",
+    ),
 }
 
 
@@ -92,7 +110,34 @@ def quantity_entry(name, view):
     }
 
 
-def quantities_part(study):
-    """The kinds of error that a chart may show; answers are judged by the first."""
+def unjudged_entry(study, points, column):
+    """One entry of the page's `quantities`, of an error that the study has no front for; None where
+    no good run has it."""
+    name, axis, subtitle, certified = UNJUDGED[column]
+    failures = [
+        run.failure or (None if error is not None else "its error is not known")
+        for run, error in zip(study.runs, points[column])
+    ]
+    if all(failures):
+        return None
+    floor = study.reference.get(certified)
+    return {
+        "column": column,
+        "name": name,
+        "axis": axis,
+        "subtitle": f"{subtitle}; no front is drawn, as an error at one time may be small by luck",
+        "floor": floor if isinstance(floor, float) and floor > 0 else None,
+        "floor_words": None,
+        "counts": [False] * len(failures),
+        "lucky": {},
+        "failures": failures,
+    }
+
+
+def quantities_part(study, points):
+    """The kinds of error that a chart may show; answers are judged by the first. `points`: the
+    page's."""
     views = sorted(study.record.views.items(), key=lambda item: item[0] != study.record.judged_by)
-    return [quantity_entry(name, view) for name, view in views]
+    entries = [quantity_entry(name, view) for name, view in views]
+    others = (unjudged_entry(study, points, column) for column in UNJUDGED)
+    return entries + [entry for entry in others if entry]

@@ -31,6 +31,7 @@ def measured_parts(study):
     pictures, chart, notes = pictures_part(study.directory)
     command = page_command(study.sidecar)
     found = answers(study)
+    points = points_part(study)
     content = {
         "title": study.record.scene,
         "until": study.record.until,
@@ -40,8 +41,8 @@ def measured_parts(study):
         "answers_note": answers_note(found),
         "judged_by": study.record.judged_by,
         **methods_part(study),
-        **points_part(study),
-        "quantities": quantities_part(study),
+        **points,
+        "quantities": quantities_part(study, points["points"]),
         "left_out": left_out_part(study.sidecar),
         "reference": reference_part(study),
         "provenance": provenance_part(study.sidecar),

@@ -2,6 +2,7 @@
 
 from html import escape
 
+from answers import runs_of_answers
 from style import number, seconds
 
 COLUMNS = (
@@ -27,9 +28,12 @@ def how_long(ratio):
     return "just as long" if times == "1" else f"{times} × as long"
 
 
-def cells(answer, runs):
-    """The cells of an answer's row."""
-    accuracy = number(answer["accuracy"])
+def cells(group, runs):
+    """The cells of the row of one or more answers that name the same run; the next method is that of
+    the coarsest."""
+    answer = group[0]
+    ends = dict.fromkeys(number(group[place]["accuracy"]) for place in (0, -1))
+    accuracy = " to ".join(ends)
     if answer["point"] is None:
         return (accuracy, answer["why"], "", "", "", "", "")
     run = runs[answer["point"]]
@@ -51,7 +55,7 @@ def static_part(content, runs, chart):
     chart's data URI, if there is one."""
     lines = [f"<p>{visible(note)}</p>" for note in content["notes"]]
     lines += ["<table>", f"<thead>{row('th', COLUMNS)}</thead>", "<tbody>"]
-    lines += [row("td", cells(answer, runs)) for answer in content["answers"]]
+    lines += [row("td", cells(group, runs)) for group in runs_of_answers(content["answers"])]
     lines += ["</tbody>", "</table>"]
     if content["answers_note"]:
         lines.append(f"<p>{visible(content['answers_note'])}</p>")

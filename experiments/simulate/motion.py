@@ -16,25 +16,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from matplotlib import ticker
 from matplotlib.collections import LineCollection
 
-from labels import Ink, move_labels
+from curves import EXACT_LOOK, draw_curves, draw_energy
 from names import shown
 from sheet import Sheet
-from style import FAINT, Look, assign_looks, family_look, use_style
+from style import Look, assign_looks, use_style
 
 SIMULATE = Path(__file__).absolute().parents[2] / "build/bin/simulate"
 METHODS = ("explicit_euler", "symplectic_euler", "semi_implicit_euler", "implicit_euler", "verlet")
 EXACT = "kahan_li8"
 EXACT_STEPS = 20
 EXACT_SAMPLES = 4
-EXACT_LOOK = Look("#C8C8C8", "", family_look("exact"))
 
 WIDTH, HEIGHT = 10.0, 5.1
 TOP, SIDE = 0.8, 3.7
-FONT_SIZE = 9.5
-LINE_INK = 2.0
 FARTHEST = 1.5
 THREADS = 11
 
@@ -79,71 +75,6 @@ def simulate(name, look, method, scene, h, every, until):
     samples = rows.reshape(len(total), -1, rows.shape[1])
     positions, velocities = np.split(samples[:, :, 2:], 2, axis=2)
     return Run(name, look, samples[:, 0, 0], positions, velocities, total, not reached_end)
-
-
-def same(a, b):
-    """Whether two runs are one motion, as those of the implicit methods where it is linear."""
-    return a.positions.shape == b.positions.shape and np.allclose(a.positions, b.positions)
-
-
-def draw_curves(axes, runs, curves, mark=""):
-    """One curve for each run with its name, a mark at each step where wanted."""
-    for i, (run, points) in enumerate(zip(runs, curves)):
-        style = {"linewidth": 1.6, "zorder": 3, "marker": mark, "markersize": 2.6}
-        if run.look is EXACT_LOOK:
-            style = {"linewidth": 5, "zorder": 1.5}
-        elif any(same(run, other) for other in runs[:i]):
-            # So that the curve below is seen as well.
-            style |= {"linestyle": (0, (3, 3)), "marker": ""}
-        axes.plot(*points.T, color=run.look.color, **style)
-    axes.grid(True)
-    axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
-    label_curves(axes, runs, curves)
-
-
-def label_curves(axes, runs, curves):
-    """Names every curve at one of its points."""
-    box = axes.bbox
-    bounds = (box.x0 + 3, box.y0 + 3, box.x1 - 3, box.y1 - 3)
-    ink = Ink(bounds)
-    pieces = [in_view(axes.transData.transform(points), bounds) for points in curves]
-    for piece in pieces:
-        for start, end in zip(piece, piece[1:]):
-            ink.add_line(start, end, LINE_INK)
-    texts = [draw_label(axes, run) for run in runs]
-    to_data = axes.transData.inverted().transform
-    move_labels(texts, [anchors(piece) for piece in pieces], ink, to_data)
-
-
-def in_view(pixels, bounds):
-    """The points of a curve up to where it first leaves the bounds, that point included."""
-    low, high = np.array(bounds[:2]), np.array(bounds[2:])
-    pixels[0] = np.clip(pixels[0], low, high)
-    outside = np.any((pixels < low - 3) | (pixels > high + 3), axis=1)
-    if not outside.any():
-        return np.clip(pixels, low, high)
-    first = np.argmax(outside)
-    start, step = pixels[first - 1], pixels[first] - pixels[first - 1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(step > 0, (high - start) / step, (low - start) / step)
-    # Several points, so that a label finds its place along the last straight line.
-    last = np.linspace(0, np.nanmin(np.abs(shares)), 8)[1:, None] * step
-    return np.vstack([pixels[:first], start + last])
-
-
-def anchors(piece):
-    """A dozen points of the later part of a curve, where the methods have parted."""
-    chosen = np.unique(np.linspace(len(piece) / 2, len(piece) - 1, 12).astype(int))
-    return [tuple(piece[i]) for i in chosen]
-
-
-def draw_label(axes, run):
-    """The name of a run and how it failed, not yet in its place."""
-    words = run.name + (f" blew up by t = {run.times[-1]:g} s" if run.failed else "")
-    style = {"size": FONT_SIZE, "color": run.look.text_color, "ha": "center", "va": "center"}
-    style["bbox"] = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.8}
-    style["arrowprops"] = {"arrowstyle": "-", "color": run.look.color, "lw": 0.8, "shrinkA": 0}
-    return axes.annotate(words, (0, 0), (0, 0), textcoords="offset points", zorder=6, **style)
 
 
 def draw_plane(sheet, runs, curves, words):
@@ -199,29 +130,6 @@ def draw_cloth(sheet, runs):
         axes.set_title(f"{run.name}\n{state}", size=9, color=run.look.text_color)
 
 
-def draw_energy(sheet, runs):
-    """The energy over time: its ratio to the first where all is positive, else the difference."""
-    axes = sheet.axes(5.9, TOP, WIDTH - 6.1, SIDE)
-    first = runs[0].energy[0]
-    if all(run.energy.min() > 0 for run in runs):
-        energies = [run.energy / first for run in runs]
-        axes.set(yscale="log", ylabel="energy / first energy")
-        axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
-        axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.yaxis.set_minor_locator(ticker.NullLocator())
-    else:
-        energies = [run.energy - first for run in runs]
-        axes.set_ylabel("energy − first energy in J")
-    # A run that blows up leaves the axes above, where its name needs room.
-    room = 0.4 if any(run.failed for run in runs) else 0.05
-    tame = np.concatenate([energy for run, energy in zip(runs, energies) if not run.failed])
-    low, high = axes.transData.transform([(0, tame.min()), (0, tame.max())])
-    limits = (low - 0.05 * (high - low), high + room * (high - low))
-    axes.set_ylim(*axes.transData.inverted().transform(limits)[:, 1])
-    axes.set(xlim=(0, runs[0].times[-1]), xlabel="t in s")
-    draw_curves(axes, runs, [np.stack([r.times, e], 1) for r, e in zip(runs, energies)])
-
-
 VIEWS = {"phase": draw_phase, "path": draw_path, "cloth": draw_cloth}
 
 
@@ -237,7 +145,7 @@ def main(view, scene, h, until, out):
     exact = f"exact: {EXACT} at h / {EXACT_STEPS}"
     sheet.head(0.15, (0.25, 14, title), (0.54, 10, exact))
     VIEWS[view](sheet, runs)
-    draw_energy(sheet, runs)
+    draw_energy(sheet.axes(5.9, TOP, WIDTH - 6.1, SIDE), runs)
     sheet.save(out)
 
 

@@ -1,5 +1,7 @@
 """Whether the page of a report does what it should in a real browser: Chromium without a screen."""
 
+import itertools
+
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
@@ -85,6 +87,9 @@ class Choosing(Page):
     def test_a_row_of_the_answers_is_chosen_by_enter(self):
         rows = "[...document.querySelectorAll('.answers tbody tr')].map(row => row.dataset.point)"
         points = self.browser.value("qddotReport.report.answers.map(answer => answer.point)")
+        # One row for a run that is the fastest at several accuracies.
+        points = [point for point, _ in itertools.groupby(points)]
+        self.assertLess(len(points), 7)
         expected = [None if point is None else str(point) for point in points]
         self.assertEqual(self.browser.value(rows), expected)
         opening = self.chosen

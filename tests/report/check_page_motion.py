@@ -3,6 +3,7 @@
 from selenium.webdriver.common.keys import Keys
 
 from browser import Page
+from packed_folder import edit_json
 
 DRAWS = "Number(document.querySelector('.views').dataset.draws)"
 ENDED = "run.outcome === 'reached_end'"
@@ -23,6 +24,24 @@ requestAnimationFrame(() => {
     if (data[i + 3] > 0 && light < 600) inks[left ? 0 : 1]++;
   }
   done(inks);
+});
+"""
+# How high the drawing of a body is by its width, over all of the canvas.
+SHAPE = """
+const done = arguments[0];
+document.querySelector(".player input").dispatchEvent(new Event("input"));
+requestAnimationFrame(() => {
+  const canvas = document.querySelector(".views canvas");
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+  copy.drawImage(canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+  const [xs, ys] = [new Set(), new Set()];
+  for (let i = 0; i < data.length; i += 4) {
+    if (data[i + 3] === 0 || data[i] + data[i + 1] + data[i + 2] > 600) continue;
+    xs.add((i / 4) % canvas.width);
+    ys.add(Math.floor(i / 4 / canvas.width));
+  }
+  done(ys.size / xs.size);
 });
 """
 CHOICES = """
@@ -177,6 +196,66 @@ class Moving(Page):
         self.show("true", self.packed("still", frames=1))
         self.browser.wait(f"{DRAWS} > 0")
         self.assertEqual(self.browser.count(".play"), 0)
+
+    def test_several_motions_share_a_view_and_a_plot_of_energies(self):
+        self.show()
+        kept = self.browser.value(
+            "qddotReport.keptRuns.map(run => run.point).filter(at => at !== qddotReport.state.run)"
+        )
+        for point in kept[:2]:
+            self.browser.run(
+                "const menu = document.getElementById('compare-menu'); menu.value = arguments[0];"
+                "menu.dispatchEvent(new Event('change'))",
+                str(point),
+            )
+        self.browser.wait("document.querySelectorAll('.view').length === 4")
+        energies = "document.getElementById('energy-errors').data.length"
+        self.assertEqual(self.browser.value(energies), 4)
+        self.browser.find("#together").click()
+        self.browser.wait("document.querySelectorAll('.view').length === 1")
+        words = self.browser.text(".view")
+        for point in kept[:2]:
+            label = self.browser.value("qddotReport.keptMotion(arguments[0]).label", point)
+            self.assertIn(label, words)
+            self.assertIn(label, self.browser.text("#energies-key"))
+        self.assertGreater(sum(self.browser.driver.execute_async_script(INKS)), 1000)
+        # The address keeps it all.
+        fragment = self.browser.value("location.hash")
+        self.load(self.made, fragment)
+        self.assertEqual(self.browser.value("qddotReport.state.compared"), kept[:2])
+        self.browser.wait("document.querySelectorAll('.view').length === 1")
+        self.browser.find("#compared button").click()
+        self.assertEqual(self.browser.value(energies), 3)
+
+    def test_one_mass_has_its_phase_plane(self):
+        self.show(page=self.packed("mass", side=2, dimension=2))
+        drawn = "[...document.querySelectorAll('#phase-charts .drawing')].map(one => one.data)"
+        charts = self.browser.value(f"{drawn}.map(data => data.map(({{ x, y }}) => [x, y]))")
+        run = self.browser.value("qddotReport.keptMotion(qddotReport.state.run)")
+        self.assertEqual(len(charts), 2)
+        for along, (reference, own) in enumerate(charts):
+            self.assertEqual(own, [run["phase"][name][along] for name in ("position", "velocity")])
+            self.assertNotEqual(reference, own)
+        self.doCleanups()
+        self.show()
+        self.assertFalse(self.browser.find("#phase").is_displayed())
+
+    def test_the_camera_stands_upright_in_gravity(self):
+        # The sheet lies in the plane of x and y, and the camera looks down by some 23 degrees.
+        shapes = []
+        for name, gravity in (("none", [0, 0, 0]), ("z", [0, 0, -9.81]), ("y", [0, -9.81, 0])):
+            def change(folder, gravity=gravity):
+                edit_json(folder / "points.json", lambda c: c["scene"].update(gravity=gravity))
+
+            self.show(page=self.packed(f"upright_{name}", change))
+            self.browser.wait(f"{DRAWS} > 0")
+            self.browser.run("qddotReport.goTo(0)")
+            shapes.append(self.browser.driver.execute_async_script(SHAPE))
+            self.doCleanups()
+        self.assertEqual(shapes[0], shapes[1])
+        # Two views beside each other: a square is half as wide as both.
+        self.assertLess(shapes[1], 0.35)
+        self.assertGreater(shapes[2], 0.45)
 
     def test_many_choices_leave_no_drawings_behind(self):
         self.load(self.made)

@@ -19,6 +19,7 @@ import static_part
 from commands import RunCommands
 from packed_folder import Folder, elements
 from record import read_record
+from style import number
 from study_folder import read_study
 from programs import BIN, Study
 
@@ -112,6 +113,25 @@ class Contents(Folder):
             start = f"build/bin/simulate --scene {scene} --method {method} "
             self.assertRegex(commands[method], start + words)
 
+    def test_all_measured_errors_may_be_chosen(self):
+        data = self.make(has_motions=False).data
+        rows = self.rows()
+        of_column = {one["column"]: one for one in data["quantities"]}
+        for column in ("error_position", "error_velocity", "error_energy", "error_energy_max"):
+            failures = of_column[column]["failures"]
+            drawn = [row[column] for row, why in zip(rows, failures) if why is None]
+            shown = [one for one, why in zip(data["points"][column], failures) if why is None]
+            self.assertEqual([float(one) for one in drawn], shown, column)
+            self.assertGreater(len(shown), 10)
+        # Methods are judged by neither of these, and their least error is the reference's own.
+        self.assertFalse(any(of_column["error_velocity"]["counts"]))
+        self.assertEqual(of_column["error_velocity"]["floor"], 3e-12)
+        for row in rows:
+            row["error_velocity"] = ""
+        columns = [one["column"] for one in self.data_of(rows)["quantities"]]
+        self.assertNotIn("error_velocity", columns)
+        self.assertIn("error_energy", columns)
+
     def test_what_an_answer_says(self):
         row = {"accuracy": 1e-2, "point": 3, "runner_up": 5, "ratio": 2.0, "why_empty": None}
         row |= {"others": [{"family": "sundials", "point": 5, "ratio": 2.0}]}
@@ -152,7 +172,9 @@ class Motions(Folder):
             name = data["methods"][data["points"]["method"][point]]["name"]
             self.assertEqual(name, row["method"])
             self.assertEqual(data["points"]["value"][point], float(row["value"]))
-            self.assertEqual(len(run["energy"]["t"]), int(row["frames"]))
+            self.assertEqual(len(run["energy"]["total"]), int(row["frames"]))
+            # The times are those of the frames, and the potential follows.
+            self.assertEqual(set(run["energy"]), {"kinetic", "total"})
             if row["outcome"] != "reached_end" or run["distances"] is None:
                 continue
             self.assertFalse(run["left_box"])
@@ -171,6 +193,33 @@ class Motions(Folder):
         self.assertEqual((found["t"], found["kinetic"]), ([0.01234568, 0.5], [2.345679e-5, None]))
         self.assertEqual(found["potential"], [-1.234568, None])
         self.assertEqual(found["total"], [0.12345678901234567, None])
+
+    def test_upwards_is_against_gravity(self):
+        self.make(side=3, frames=3, runs=1)
+        for gravity, up in (
+            ([0, -9.81, 0], [0, 1, 0]), ([0, -9.81], [0, 1, 0]), ([3], [-1, 0, 0]),
+            ([0, 0, 0], None), (None, None), ("down", None), ([0, None, 1], None),
+        ):  # fmt: skip
+            self.edit("points.json", lambda content: content["scene"].update(gravity=gravity))
+            self.assertEqual(self.page().data["motion"]["up"], up, gravity)
+
+    def test_one_mass_has_a_phase_plane(self):
+        # Of two nodes the first stays.
+        for dimension in (1, 2):
+            motion = self.make(side=2, dimension=dimension, runs=2).data["motion"]
+            for run, row in zip(motion["runs"], self.rows("motions.csv")):
+                with h5py.File(self.folder / row["file"]) as file:
+                    rows = {
+                        "position": np.array(file["VTKHDF/Points"])[1::2],
+                        "velocity": np.array(file["VTKHDF/PointData/velocity"])[1::2],
+                    }
+                for name, wanted in rows.items():
+                    found = np.array(run["phase"][name])
+                    self.assertEqual(found.shape, (dimension, len(run["times"])))
+                    # Five digits.
+                    np.testing.assert_allclose(found, wanted.T[:dimension], rtol=5e-5)
+        runs = self.make(side=3, dimension=2, runs=2).data["motion"]["runs"]
+        self.assertNotIn("phase", runs[0])
 
     def test_scenes_of_fewer_dimensions_and_parts(self):
         result = self.make(side=3, runs=2)
@@ -284,8 +333,14 @@ class WithoutScripts(Folder):
         columns = sum(tag == "th" and "scope" not in of for tag, of, _ in found)
         cells = [text for tag, _, text in found if tag == "td"]
         rows = [cells[start : start + columns] for start in range(0, len(cells), columns)]
-        self.assertEqual([row[0] for row in rows], [f"1e-{digit}" for digit in range(2, 9)])
-        for row, answer in zip(rows, data["answers"]):
+        # A run that is the fastest at several accuracies has one row.
+        groups = answers.runs_of_answers(data["answers"])
+        self.assertTrue(1 < len(groups) < len(data["answers"]))
+        ends = [(number(group[0]["accuracy"]), number(group[-1]["accuracy"])) for group in groups]
+        self.assertEqual([row[0] for row in rows], [" to ".join(dict.fromkeys(e)) for e in ends])
+        points = [group[0]["point"] for group in groups]
+        self.assertTrue(all(a != b for a, b in zip(points, points[1:])))
+        for row, (answer, *_) in zip(rows, groups):
             value = data["points"]["value"][answer["point"]]
             self.assertEqual(float(row[2].split()[2]), float(f"{value:.4g}"))
             self.assertEqual(row[-1], answer["warning"] or "")

@@ -6,7 +6,8 @@ const HTML = "http://www.w3.org/1999/xhtml";
 const isAttributes = (value) => value && Object.getPrototypeOf(value) === Object.prototype;
 
 /** A new element of a kind such as "p.quiet". Attributes may follow, in which a function listens to
-    the event of that name; then come children and lists of them, of which null and false are none.
+    the event of that name; then come children and nested lists of them, of which null and false are
+    none.
  */
 export function element(kind, ...children) {
   const [tag, ...classes] = kind.split(".");
@@ -19,7 +20,7 @@ export function element(kind, ...children) {
     else if (!name.startsWith("on")) node.setAttribute(name, value === true ? "" : value);
   }
   const is = (child) => child !== null && child !== undefined && child !== false;
-  node.append(...children.flat().filter(is));
+  node.append(...children.flat(Infinity).filter(is));
   return node;
 }
 

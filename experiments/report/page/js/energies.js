@@ -1,11 +1,12 @@
 // The energies of the chosen run over time, and how far its total drifts.
+import { REFERENCE, comparedMotions, keySign, reference } from "./compare.js";
 import { byId, element } from "./element.js";
 import { GRID, INK, axisTitle, decades, plot, widened } from "./plot.js";
-import { keptMotion, report, state } from "./report.js";
+import { keptMotion, state } from "./report.js";
 import { words } from "./words.js";
 
 const KINDS = { kinetic: "#0072B2", potential: "#B35900", total: INK };
-const REFERENCE = { color: "#b5b5b0", width: 4 };
+const REFERENCE_LINE = { color: REFERENCE, width: 4 };
 
 const axis = (text) => ({
   title: axisTitle(text, 4, 12),
@@ -29,36 +30,52 @@ const line = (x, y, color, hover) => ({
   hovertemplate: `${hover} at t = %{x:.4g} s<extra></extra>`,
 });
 
-const referenceLine = (x, y) => ({ x, y, mode: "lines", line: REFERENCE, hoverinfo: "skip" });
+const referenceLine = (x, y) => ({ x, y, mode: "lines", line: REFERENCE_LINE, hoverinfo: "skip" });
 
-const kinds = { ...KINDS, "the reference's total": REFERENCE.color };
-for (const [name, color] of Object.entries(kinds)) {
-  const sign = element("span", { "aria-hidden": "true", style: `color: ${color}` }, "━ ");
-  byId("energies-key").append(element("span", sign, `${name}  `));
+// The colours in words: of the run's energies, and of the totals of others.
+function drawKey(others) {
+  const key = [
+    ...Object.entries(KINDS),
+    ...(energyOf(reference) ? [["the reference's total", REFERENCE]] : []),
+    ...others.map(({ run, color }) => [`total of ${run.label}`, color]),
+  ];
+  byId("energies-key").replaceChildren(
+    ...key.map(([name, color]) => element("span.key", keySign(color), name)),
+  );
 }
 
-/** Draws them, or nothing where the run's motion was not kept. */
+const energyOf = (run) => run?.energy ?? null;
+
+/** Draws them, with the totals of the runs that it is compared with; nothing where the run's motion
+    was not kept. */
 export function drawEnergies() {
   const run = keptMotion(state.run);
   byId("energies").hidden = !run?.energy;
   if (!run?.energy) return;
-  const reference = report.motion.runs.find((one) => one.role === "reference" && one.energy);
-  const scale = Math.max(0, ...(reference ?? run).energy.kinetic) || 1;
+  const exact = energyOf(reference);
+  const others = comparedMotions().filter((other) => energyOf(other.run));
+  drawKey(others);
+  const scale = Math.max(0, ...(exact ?? run.energy).kinetic) || 1;
   byId("energy-scale").textContent =
     `Differences of the total are divided by the largest kinetic energy, ${words.number(scale)} J.`;
   const { t, total } = run.energy;
   const lines = Object.entries(KINDS).map(([kind, color]) =>
     line(t, run.energy[kind], color, "%{y:.4g} J"),
   );
-  if (reference) lines.unshift(referenceLine(reference.energy.t, reference.energy.total));
+  for (const { run: other, color } of others)
+    lines.unshift(line(other.energy.t, other.energy.total, color, `${other.label}: %{y:.4g} J`));
+  if (exact) lines.unshift(referenceLine(exact.t, exact.total));
   plot(byId("energy-parts"), lines, layout("energy in J"));
 
   // A logarithmic axis has no place for zero.
   const drift = (values) =>
     values.map((value) => (value === null ? null : Math.abs(value - values[0]) / scale || null));
   const drifts = [line(t, drift(total), INK, "%{y:.2g}")];
-  if (reference && reference !== run)
-    drifts.unshift(referenceLine(reference.energy.t, drift(reference.energy.total)));
+  for (const { run: other, color } of others)
+    drifts.unshift(
+      line(other.energy.t, drift(other.energy.total), color, `${other.label}: %{y:.2g}`),
+    );
+  if (exact && exact !== run.energy) drifts.unshift(referenceLine(exact.t, drift(exact.total)));
   const all = drifts.flatMap(({ y }) => y).filter((value) => value > 0);
   const range = all.length ? widened(all, 1.5) : [1e-16, 1];
   plot(byId("energy-errors"), drifts, layout("|E − E(0)| / largest kinetic", decades(...range)));

@@ -1,4 +1,5 @@
 // The motion of the chosen run beside the reference's, and the words on it.
+import { reference, shownMotions, keySign } from "./compare.js";
 import {
   colorTable,
   goTo,
@@ -25,7 +26,6 @@ import { words } from "./words.js";
 
 const { motion } = report;
 const section = byId("motion");
-const reference = motion?.runs.find((run) => run.role === "reference") ?? null;
 // The reference in grey: dark lines, lighter faces, on which shade is seen.
 const NEUTRAL = motion?.faces ? [0.24, 0.25, 0.27] : [0.07, 0.075, 0.085];
 // The height at which the largest displacement of a line of nodes is drawn, by its length.
@@ -43,7 +43,8 @@ const lost = byId("motion-lost");
 const controls = byId("motion-controls");
 
 let stage = null;
-// The parts {run, body, view} that are drawn, with their bounds and how a line is lifted.
+// The parts {run, body, view} that are drawn, with their bounds and how a line is lifted. In one view
+// each has a color of its own.
 let scene = null;
 let turn = 0;
 
@@ -102,8 +103,8 @@ function stopWords(run) {
   return `its numbers grow beyond what is kept from t = ${words.seconds(run.times.at(-1))} on`;
 }
 
-// The place of a run's view, with what it shows in words.
-function viewOf(run) {
+// A run in words, in a view of its own.
+function wordsOf(run) {
   const isReference = run.role === "reference";
   const stop = stopWords(run);
   const notes = [
@@ -112,17 +113,23 @@ function viewOf(run) {
       "its steps end at the frames, so it is not quite the chart's run",
     run.left_box && "parts of it leave what is kept",
   ];
-  return element(
-    "div.view",
-    element(
-      "div.view-words",
-      element("b", run.label),
-      isReference ? ["stands for the reference", run.why].filter(Boolean).join(": ") : run.why,
-      stop && element("div", element("span.view-stop", stop)),
-      notes.filter(Boolean).map((text) => element("div.quiet", text)),
-    ),
-  );
+  return [
+    element("b", run.label),
+    isReference ? ["stands for the reference", run.why].filter(Boolean).join(": ") : run.why,
+    stop && element("div", element("span.view-stop", stop)),
+    notes.filter(Boolean).map((text) => element("div.quiet", text)),
+  ];
 }
+
+// The same among others in one view, which they must not hide.
+function shortWordsOf({ run, color }) {
+  const isWhole = run.outcome === "reached_end";
+  const stop = isWhole ? stopWords(run) : `stopped at t = ${words.seconds(run.t_reached)}`;
+  const name = run.role === "reference" ? `${run.label}, for the reference` : run.label;
+  return element("div", keySign(color), name, stop && [" ", element("span.view-stop", stop)]);
+}
+
+const viewWith = (...words) => element("div.view", element("div.view-words", words));
 
 // The ways to move the view, and the meaning of the drawing.
 function explanation(lift) {
@@ -134,7 +141,7 @@ function explanation(lift) {
   ];
   if (lift)
     notes.push(
-      `Nodes move along the line; their displacement is drawn upwards as well, ${words.ratio(lift.factor)} as large.`,
+      `Nodes move along the line; their displacement is drawn ${motion.up ? "sideways" : "upwards"} as well, ${words.ratio(lift.factor)} as large.`,
     );
   return [
     sentence(`${move}; pinch, or click and turn the wheel, to zoom.`),
@@ -166,10 +173,12 @@ function place(run, { positions }, t) {
   }
 }
 
-// Colours the nodes; returns the largest packed distance, null where none are known.
-function paint(run, { colors }, t) {
-  if (!run.distances) {
-    colors.forEach((_, i) => (colors[i] = NEUTRAL[i % 3]));
+// Colours the nodes by their distances, or all the same in one view; returns the largest packed
+// distance, null where none is shown.
+function paint(run, { colors }, t, color) {
+  if (color || !run.distances) {
+    const same = color ? new THREE.Color(color).toArray() : NEUTRAL;
+    colors.forEach((_, i) => (colors[i] = same[i % 3]));
     return null;
   }
   const first = frameAt(run, t) * motion.nodes;
@@ -180,11 +189,13 @@ function paint(run, { colors }, t) {
 
 function show(t) {
   if (!scene) return;
-  for (const { run, body, view } of scene.parts) {
+  for (const { run, body, view, color } of scene.parts) {
     place(run, body, t);
-    const largest = paint(run, body, t);
-    if (largest !== null) pointAt(largest);
+    const largest = paint(run, body, t, color);
+    // The chosen run is the last.
+    if (largest !== null && run === scene.parts.at(-1).run) pointAt(largest);
     body.update();
+    if (color) continue;
     const isOver = t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run));
     view.style.background = isOver ? "#fbe9e5" : "";
   }
@@ -216,13 +227,14 @@ export async function drawMotion() {
   if (!canUnpack())
     return say(sentence("This browser cannot unpack the motions: it lacks DecompressionStream."));
   const chosen = keptMotion(state.run);
-  const runs = [...new Set([reference, chosen])].filter(Boolean);
+  const shown = shownMotions();
+  const runs = shown.map(({ run }) => run);
   const above = [keptMotions(), !chosen && withoutMotion()];
   if (!runs.length) return say(above);
 
   const isFirst = stage === null;
   try {
-    stage ??= stageOf(motion.dimension, (gone) => (lost.hidden = !gone));
+    stage ??= stageOf(motion, (gone) => (lost.hidden = !gone));
   } catch {
     const why = "This browser draws no WebGL, which the motion is drawn with";
     return say(above, sentence(`${why}; all else on this page works without.`));
@@ -237,13 +249,21 @@ export async function drawMotion() {
   }
   if (mine !== turn) return;
 
-  const views = runs.map(viewOf);
+  const { together } = state;
+  const views = together
+    ? [viewWith(shown.map(shortWordsOf))]
+    : runs.map((run) => viewWith(wordsOf(run)));
   const bodies = runs.map(() => bodyOf({ ...motion, springs, faces }));
   const bounds = boundsOf(frames[0]);
   const lift = liftOf(bounds);
-  const hasDistances = frames.some((run) => run.distances);
+  const hasDistances = !together && frames.some((run) => run.distances);
   markUnknown(motion.known_to);
-  const parts = frames.map((run, at) => ({ run, body: bodies[at], view: views[at] }));
+  const parts = frames.map((run, at) => ({
+    run,
+    body: bodies[at],
+    view: views[together ? 0 : at],
+    color: together ? shown[at].color : null,
+  }));
   scene = { parts, lift, bounds, table: colorTable() };
   const until = Math.max(...frames.map((run) => run.times.at(-1)));
   // A single frame has no time to go through.
@@ -256,7 +276,7 @@ export async function drawMotion() {
   say(above, holder, lost, controls, hasDistances && scale, explanation(lift));
   const names = runs.map(({ label }) => label).join(" and ");
   stage.canvas.setAttribute("aria-label", `Motion of ${names}`);
-  stage.show(holder, views, bodies);
+  stage.show(holder, views, together ? [bodies] : bodies.map((body) => [body]));
   // The reader's own view stays from run to run.
   if (isFirst || !reference) stage.look(bounds);
   (until > 0 ? goTo : show)(openingTime(frames.at(-1), until));

@@ -6,7 +6,8 @@ import { drawEnergies } from "./energies.js";
 import { drawFailures } from "./failures.js";
 import "./legend.js";
 import { drawMotion, printMotion } from "./motion.js";
-import { allRuns, choose, onChoice, ordinates, report, state } from "./report.js";
+import { drawPhase } from "./phase.js";
+import { allRuns, choose, isStudy, onChoice, ordinates, report, state } from "./report.js";
 import { drawRun } from "./run.js";
 import { words } from "./words.js";
 
@@ -25,6 +26,7 @@ function drawCharts() {
   drawChart();
   drawFailures();
   drawEnergies();
+  drawPhase();
 }
 
 // Charts follow the width that they have: in another window, on a turned screen, on paper.
@@ -64,7 +66,8 @@ function drawAll() {
     ordinates.map((column) => [column, column === "time_s" ? "time" : words.plain(column)]),
     "ordinate",
   );
-  for (const id of ["chart", "run"]) byId(id).hidden = allRuns.length === 0;
+  byId("chart").hidden = !isStudy || allRuns.length === 0;
+  byId("run").hidden = allRuns.length === 0;
   if (allRuns.length) {
     drawRun();
     drawCharts();
@@ -80,10 +83,11 @@ onChoice((changed) => {
   else moveRing();
   drawFailures();
   if (has("run", "column")) drawRun();
-  if (has("run")) {
+  if (has("run", "compared")) {
     drawEnergies();
-    drawMotion();
+    drawPhase();
   }
+  if (has("run", "compared", "together")) drawMotion();
 });
 
 // The answers come to the screen first: the rest waits for the frame after.

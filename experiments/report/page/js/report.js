@@ -1,10 +1,12 @@
-// The report's data, which the packer wrote as JSON, and the reader's choice of it: the run, the kind
-// of error, the ordinate, and the methods that are drawn strongly.
+// The report's data, which the packer wrote as JSON, and the reader's choice of it: the run and those
+// beside it, the kind of error, the ordinate, and the methods that are drawn strongly.
 import { byId } from "./element.js";
 import { isKnown, words } from "./words.js";
 
 export const report = JSON.parse(byId("report").textContent);
 export const points = report.points;
+/** Whether the page is of a study, with a chart and answers, and not of motions alone. */
+export const isStudy = report.answers !== null;
 export const methods = report.methods;
 
 /** All runs, as places in the columns of `points`. */
@@ -43,6 +45,13 @@ export function whyNot(point, column) {
 export const knobOf = (point) => points.knob_words[point];
 
 const motions = report.motion?.runs ?? [];
+// The page tells of energies only what does not follow from the rest.
+for (const { energy, times } of motions.filter((run) => run.energy)) {
+  energy.t ??= times;
+  energy.potential = energy.total.map((total, at) =>
+    total === null || energy.kinetic[at] === null ? null : total - energy.kinetic[at],
+  );
+}
 
 /** The motions that were kept of runs, the most telling first. */
 export const keptRuns = motions.filter((run) => run.role === "run" && run.point !== null);
@@ -72,19 +81,31 @@ export const ordinates = [
 
 // The first answer whose motion was kept; else the first run with a motion, the first answer, any.
 function openingRun() {
-  const answers = report.answers.map(({ point }) => point).filter((point) => point !== null);
+  const answers = (report.answers ?? []).map(({ point }) => point).filter((point) => point !== null);
   const kept = keptRuns.map(({ point }) => point);
   const known = answers.find((point) => kept.includes(point));
   return known ?? kept[0] ?? answers[0] ?? allRuns[0] ?? null;
 }
 
+// The run that an address names as METHOD@VALUE; undefined for another text.
+function runNamed(text) {
+  const [, name, value] = /^(.*)@(.*)$/s.exec(text) ?? [];
+  const method = methods.findIndex((one) => one.name === name);
+  return runsOf[method]?.find((point) => String(points.value[point]) === value);
+}
+
+const nameOf = (point) => `${methods[points.method[point]].name}@${points.value[point]}`;
+
 function addressed(hash) {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const found = {};
-  const [, name, value] = /^(.*)@(.*)$/s.exec(given.get("run") ?? "") ?? [];
-  const method = methods.findIndex((one) => one.name === name);
-  const run = runsOf[method]?.find((point) => String(points.value[point]) === value);
+  const run = runNamed(given.get("run") ?? "");
   if (run !== undefined) found.run = run;
+  if (run !== undefined) {
+    const others = given.getAll("with").map(runNamed);
+    found.compared = others.filter((point) => point !== undefined);
+    found.together = given.get("views") === "one";
+  }
   if (report.quantities.some(({ column }) => column === given.get("error")))
     found.column = given.get("error");
   if (ordinates.includes(given.get("against"))) found.ordinate = given.get("against");
@@ -96,10 +117,14 @@ const opening = {
   run: openingRun(),
   column: report.quantities[0].column,
   ordinate: "time_s",
+  // Few motions are best seen together.
+  compared: isStudy ? [] : keptRuns.slice(1, 5).map(({ point }) => point),
+  together: !isStudy,
   ...addressed(location.hash),
 };
 
-/** The choice now; `shown`: the methods that are drawn strongly. */
+/** The choice now; `compared`: the runs beside the chosen one; `together`: whether their motions are
+    in one view; `shown`: the methods that are drawn strongly. */
 export const state = {
   ...opening,
   shown: new Set([...methods.keys()].filter((method) => methods[method].strong)),
@@ -111,10 +136,11 @@ export const chosenQuantity = () => quantityOf(state.column);
 // A browser may refuse a page on disk to change its address; the choice stands all the same.
 function write(how) {
   const address = new URLSearchParams();
-  if (state.run !== null)
-    address.set("run", `${methods[points.method[state.run]].name}@${points.value[state.run]}`);
+  if (state.run !== null) address.set("run", nameOf(state.run));
   address.set("error", state.column);
   address.set("against", state.ordinate);
+  for (const point of state.compared) address.append("with", nameOf(point));
+  if (state.together) address.set("views", "one");
   try {
     history[how](null, "", `#${address}`);
   } catch {
@@ -122,8 +148,11 @@ function write(how) {
   }
 }
 
+// Whether a part of the choice stays what it is.
+const isSame = (a, b) => (Array.isArray(a) ? String(a) === String(b) : a === b);
+
 function change(changes, how) {
-  const changed = Object.keys(changes).filter((key) => state[key] !== changes[key]);
+  const changed = Object.keys(changes).filter((key) => !isSame(state[key], changes[key]));
   if (!changed.length) return;
   Object.assign(state, changes);
   write(how);

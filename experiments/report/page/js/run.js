@@ -111,7 +111,7 @@ function luck(point) {
 
 function head(point) {
   const { name, line } = methods[points.method[point]];
-  const warnings = report.answers.filter((answer) => answer.point === point && answer.warning);
+  const warnings = (report.answers ?? []).filter((answer) => answer.point === point && answer.warning);
   const notes = [openRange(point), luck(point)].filter((note) => note);
   return element(
     "div",
@@ -153,7 +153,7 @@ export function drawRun() {
   const seconds = keptMotion(state.run)?.seconds;
   byId("run-head").replaceChildren(head(state.run));
   byId("run-figures").replaceChildren(
-    ...figures("Its counts", countsOf(state.run)),
+    ...(report.counts.length ? figures("Its counts", countsOf(state.run)) : []),
     ...(seconds?.all > 0 ? figures("Where its time goes", phases(seconds)) : []),
   );
 }

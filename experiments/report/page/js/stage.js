@@ -1,5 +1,5 @@
-// A scene as three.js draws it, and two views of one camera on one canvas: the reference and the
-// chosen run.
+// A scene as three.js draws it, and views of one camera on one canvas: the reference, the chosen run
+// and those beside it, each by itself or all in one.
 
 // In degrees: the camera's angle of view.
 const ANGLE = 32;
@@ -42,9 +42,21 @@ function thickLines(springs, width, color) {
   return lines;
 }
 
+/** The direction of `up` [1], or that of the z axis where there is none. */
+const upwards = (up) => (up ? new THREE.Vector3(...up) : new THREE.Vector3(0, 0, 1));
+
+// Turns a direction that is told for z upwards.
+function turned(direction, up) {
+  const [z, to] = [new THREE.Vector3(0, 0, 1), upwards(up)];
+  const axis = z.clone().cross(to);
+  // Upside down, any axis across will do.
+  if (axis.length() === 0) axis.set(1, 0, 0);
+  return direction.applyAxisAngle(axis.normalize(), z.angleTo(to));
+}
+
 /** The body of `nodes` nodes: springs as lines, faces shaded, nodes as points where they are few;
     update() draws its positions and colours (both nodes x 3) from then on. */
-export function bodyOf({ nodes, springs, faces, pinned }) {
+export function bodyOf({ nodes, springs, faces, pinned, up }) {
   const scene = new THREE.Scene();
   const positions = new Float32Array(3 * nodes);
   const colors = new Float32Array(3 * nodes);
@@ -70,7 +82,7 @@ export function bodyOf({ nodes, springs, faces, pinned }) {
     });
     parts.push(new THREE.Mesh(geometry(faces), skin));
     const sun = new THREE.DirectionalLight(0xffffff, 1.6);
-    sun.position.set(-0.4, -0.7, 1);
+    sun.position.copy(turned(new THREE.Vector3(-0.4, -0.7, 1), up));
     scene.add(new THREE.AmbientLight(0xffffff, 1.9), sun);
   }
   // Springs are darker than the faces below them, so that the weave is visible.
@@ -119,9 +131,11 @@ export function bodyOf({ nodes, springs, faces, pinned }) {
   return { scene, positions, colors, update, dispose };
 }
 
-// The direction from which a flat scene is looked at: along the axis in which it extends least.
-function acrossPlane({ low, high }) {
-  const extents = high.map((end, axis) => end - low[axis]);
+// The direction from which a flat scene is looked at: along the axis in which it extends least, but
+// not along the one that is upwards.
+function acrossPlane({ low, high }, up) {
+  const isUpwards = (axis) => up && Math.abs(up[axis]) > 0.1;
+  const extents = high.map((end, axis) => (isUpwards(axis) ? Infinity : end - low[axis]));
   const axis = extents.indexOf(Math.min(...extents));
   return new THREE.Vector3().setComponent(axis, axis === 1 ? -1 : 1);
 }
@@ -142,10 +156,11 @@ function distanceToSee({ low, high }, middle, from, upwards, aspect) {
   return away;
 }
 
-/** A stage, made once for the page; throws where there is no WebGL. show(holder, places, bodies)
-    puts its canvas behind the elements `places` of the holder and draws a body into each;
-    `lost(gone)` hears when the browser takes WebGL away and gives it back. */
-export function stageOf(dimension, lost) {
+/** A stage, made once for the page; throws where there is no WebGL. `up`: the unit vector against
+    gravity, or null. show(holder, places, groups) puts its canvas behind the elements `places` of
+    the holder and draws a group of bodies into each; `lost(gone)` hears when the browser takes WebGL
+    away and gives it back. */
+export function stageOf({ dimension, up }, lost) {
   const canvas = document.createElement("canvas");
   canvas.setAttribute("role", "img");
   // Edges need no more work where a pixel of the page is several of the screen.
@@ -155,7 +170,8 @@ export function stageOf(dimension, lost) {
   renderer.setScissorTest(true);
   const flat = dimension < 3;
   const eye = new THREE.PerspectiveCamera(ANGLE);
-  eye.up.set(0, 0, 1);
+  // The controls turn around the direction that is upwards when they are made.
+  eye.up.copy(upwards(up));
   const controls = new THREE.OrbitControls(eye, canvas);
   controls.enableDamping = false;
   controls.enableRotate = !flat;
@@ -172,14 +188,17 @@ export function stageOf(dimension, lost) {
   let aspect = 1;
   let holder = null;
   let places = [];
-  let bodies = [];
+  let groups = [];
   let asked = false;
 
   // Puts the camera where it sees all of the bounds.
   function look(bounds) {
     const middle = new THREE.Vector3(...bounds.low.map((low, i) => (low + bounds.high[i]) / 2));
-    const from = flat ? acrossPlane(bounds) : new THREE.Vector3(0.62, -1, 0.5).normalize();
-    eye.up.set(0, from.z === 1 ? 1 : 0, from.z === 1 ? 0 : 1);
+    const from = flat
+      ? acrossPlane(bounds, up)
+      : turned(new THREE.Vector3(0.62, -1, 0.5).normalize(), up);
+    if (up) eye.up.copy(upwards(up));
+    else eye.up.set(0, from.z === 1 ? 1 : 0, from.z === 1 ? 0 : 1);
     aspect = places[0].clientWidth / places[0].clientHeight;
     const away = distanceToSee(bounds, middle, from, eye.up, aspect);
     controls.target.copy(middle);
@@ -207,7 +226,10 @@ export function stageOf(dimension, lost) {
       eye.aspect = clientWidth / clientHeight;
       eye.zoom = Math.min(1, eye.aspect / aspect);
       eye.updateProjectionMatrix();
-      renderer.render(bodies[index].scene, eye);
+      groups[index].forEach((body, nth) => {
+        renderer.autoClear = nth === 0;
+        renderer.render(body.scene, eye);
+      });
     });
     holder.dataset.draws = Number(holder.dataset.draws ?? 0) + 1;
   }
@@ -219,10 +241,10 @@ export function stageOf(dimension, lost) {
     requestAnimationFrame(drawNow);
   }
 
-  function show(newHolder, newPlaces, newBodies) {
-    for (const body of bodies) body.dispose();
+  function show(newHolder, newPlaces, newGroups) {
+    for (const body of groups.flat()) body.dispose();
     resized.disconnect();
-    [holder, places, bodies] = [newHolder, newPlaces, newBodies];
+    [holder, places, groups] = [newHolder, newPlaces, newGroups];
     holder.append(canvas);
     resized.observe(holder);
     draw();
