@@ -19,13 +19,14 @@ import chart_data
 import energy_words
 import method_pages
 import page_data
+import whole_runs
 from page_data import ROOT
 
 PAGES = ROOT / "docs/pages"
 # The functions that a template can call.
 CALLS = {
     name: call
-    for module in (page_data, chart_data, energy_words)
+    for module in (page_data, chart_data, energy_words, whole_runs)
     for name, call in vars(module).items()
     if inspect.isroutine(call) or hasattr(call, "cache_clear")
 }

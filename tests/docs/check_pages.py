@@ -1,7 +1,6 @@
 """The pages of docs/ and README.md: what they say is measured, links lead somewhere, samples run."""
 
 import json
-import math
 import re
 import subprocess
 import tempfile
@@ -15,6 +14,7 @@ import page_data
 import page_text
 import studies
 import study as entries
+import whole_runs
 from programs import BIN, rows_of, run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -209,25 +209,76 @@ class Words(unittest.TestCase):
         self.assertTrue(second.method != best.method and second.seconds >= best.seconds)
         self.assertFalse(chart_data.fastest("cloth", 1e-4, of=["explicit_euler"]))
 
-    def crossing_of(self, times):
-        """The crossing of kinds with these times by ratio, explicit and implicit; None: not reached."""
+
+class Leads(unittest.TestCase):
+    """Which kind of methods is the fastest at which measured stiffness ratio."""
+
+    def leads_of(self, times):
+        """The last ratio at which explicit methods lead and the first from which implicit ones do,
+        with these times of both by ratio; None: not reached."""
         cells = [
             {"stiffness_ratio": ratio, "kind": kind, "method": time and "m", "time_s": time or ""}
             for ratio, pair in times.items()
             for kind, time in zip(("explicit", "implicit"), pair)
         ]
         with mock.patch.object(chart_data, "rows", lambda *_, **__: cells):
-            return chart_data.crossing("made", 1e-3)
+            return (
+                chart_data.leads_to("made", 1e-3, "explicit"),
+                chart_data.leads_from("made", 1e-3, "implicit"),
+            )
 
-    def test_a_crossing_lies_where_both_take_as_long(self):
+    def test_the_lead_changes_between_two_measured_ratios(self):
         # Explicit time grows as the root of the ratio, implicit time stays: they meet at 900.
         times = {10.0**n: (10 ** (n / 2), 30) for n in range(7)}
-        self.assertAlmostEqual(900, self.crossing_of(times), places=6)
-        self.assertEqual(1, self.crossing_of({1: (2, 1), 10: (3, 1)}))
-        self.assertTrue(math.isnan(self.crossing_of({1: (1, 2), 10: (1, 2)})))
-        # Beyond a ratio that explicit methods do not reach, implicit ones are ahead; where neither
-        # does, nothing is known.
-        self.assertEqual(10, self.crossing_of({1: (1, 2), 10: (None, 2), 100: (None, None)}))
-        # An advantage that is lost again is none.
+        self.assertEqual((100, 1000), self.leads_of({**times, 1000: (40, 30)}))
+        # Nobody leads by less than a tenth, whatever the sign.
+        for near in (31, 29):
+            self.assertEqual((100, 10000), self.leads_of({**times, 1000: (near, 30)}))
+
+    def test_one_kind_can_lead_throughout(self):
+        self.assertEqual((None, 1), self.leads_of({1: (2, 1), 10: (3, 1)}))
+        self.assertEqual((10, None), self.leads_of({1: (1, 2), 10: (1, 2)}))
+
+    def test_a_ratio_that_no_kind_reaches_says_nothing(self):
+        times = {1: (1, 2), 10: (None, 2), 100: (None, None)}
+        self.assertEqual((1, 10), self.leads_of(times))
+
+    def test_a_lead_that_is_lost_again_is_none(self):
         lost = {1: (2, 1), 10: (2, 1), 100: (1, 2), 1000: (2, 1)}
-        self.assertAlmostEqual(math.sqrt(1e5), self.crossing_of(lost), 6)
+        self.assertEqual((None, 1000), self.leads_of(lost))
+
+
+class WholeRuns(unittest.TestCase):
+    """Up to which step size all runs of a method held."""
+
+    def endurance_of(self, outcomes):
+        """That of runs with h ω = 1, 2, ... which end so; their energy peaks at the same numbers."""
+        runs = [
+            {"h_omega": str(k), "outcome": outcome, "energy_max": str(k)}
+            for k, outcome in enumerate(outcomes, 1)
+        ]
+        return whole_runs.endurance(runs[::-1])
+
+    def test_a_single_failure_is_no_limit_from_which_on_runs_fail(self):
+        found = self.endurance_of(["bounded", "gained", "bounded", "leaked", "bounded"])
+        self.assertEqual((1, 2, 4, 1), (found.held_to, found.failed_from, found.longer, found.failed))
+        self.assertEqual("1.0; 1 of 4", whole_runs.endurance_words(found))
+
+    def test_a_longer_step_that_holds_is_not_counted_as_failed(self):
+        found = self.endurance_of(["bounded", "leaked", "newton_failed", "gained", "bounded", "diverged"])
+        self.assertEqual((2, 3, 4, 3), (found.held_to, found.failed_from, found.longer, found.failed))
+        self.assertEqual((2, 4), (found.grown, found.least_growth))
+
+    def test_all_can_hold_or_fail(self):
+        for outcomes, words in ((["bounded", "leaked"], "2.0; none"), (["gained"] * 3, "–; 3 of 3")):
+            self.assertEqual(words, whole_runs.endurance_words(self.endurance_of(outcomes)))
+        self.assertRaises(page_data.BadPage, whole_runs.endurance, [])
+
+    def test_amplitudes_count_together(self):
+        """A step holds where the runs of all amplitudes do."""
+        runs = [
+            {"h_omega": h, "amplitude": amplitude, "outcome": outcome, "energy_max": "9"}
+            for amplitude, outcomes in (("1", ("bounded", "bounded")), ("2", ("bounded", "gained")))
+            for h, outcome in zip("12", outcomes)
+        ]
+        self.assertEqual("1.0; 1 of 2", whole_runs.endurance_words(whole_runs.endurance(runs)))
