@@ -1,17 +1,21 @@
 """The pages of docs/ and README.md: what they say is measured, links lead somewhere, samples run."""
 
+import csv
 import json
 import re
 import subprocess
 import tempfile
 import tomllib
 import unittest
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from unittest import mock
 
 import chart_data
 import page_data
 import page_text
+import repeated
 import studies
 import study as entries
 import whole_runs
@@ -88,8 +92,9 @@ class Runner(unittest.TestCase):
 
     def test_a_study_is_kept_where_it_ends_well_and_due_where_it_is_another(self):
         folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-        for name in ("DATA", "PICTURES", "RESULTS"):
+        for name in ("DATA", "PICTURES"):
             self.enterContext(mock.patch.object(entries, name, folder / name))
+        self.enterContext(mock.patch.object(entries, "MEASURED", str(folder / "MEASURED")))
         command = "simulate --scene examples/two_links.toml --explain"
         study = entries.Study("list", [command], text="m.csv")
         self.assertEqual("not measured", study.due())
@@ -105,6 +110,81 @@ class Runner(unittest.TestCase):
         bad = entries.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])
         self.assertRaises(SystemExit, studies.make, bad, again=False)
         self.assertIsNone(bad.record)
+
+
+    def test_a_study_that_is_named_and_not_due_is_repeated_beside_its_data(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for name, place in (("DATA", Path), ("PICTURES", Path), ("MEASURED", str), ("REPEATED", str)):
+            self.enterContext(mock.patch.object(entries, name, place(folder / name)))
+        command = "exchange --scene fpu --until 1 --methods verlet --h-omega 0.5"
+        study = entries.Study("tiny", [command], tables=["summary.csv"])
+        self.enterContext(mock.patch.object(studies, "read_studies", lambda: {"tiny": study}))
+        self.assertIn("tiny: exchange", self.printed_by("tiny"))  # not measured yet, so it is kept
+        record = json.loads((study.data / "study.json").read_text())
+        entries.write_whole(study.data / "study.json", json.dumps({**record, "processor": "an abacus"}))
+        rows = repeated.read(study.data / "summary.csv")
+        row = next(row for row in rows if row["method"] == "verlet")
+        true = row["energy_error"]
+        row["energy_error"] = f"{float(true) / 2:.6g}"
+        text = StringIO()
+        csv.DictWriter(text, row).writerows([dict(zip(row, row)), *rows])
+        entries.write_whole(study.data / "summary.csv", text.getvalue())
+        before = {file: file.read_bytes() for file in (folder / "DATA").rglob("*.*")}
+
+        said = self.printed_by("tiny")
+        self.assertRegex(said, r"(?m)^then: an abacus, \d{4}-\d\d-\d\d")
+        self.assertIn(f"now:  {studies.processor()}", said)
+        numbers = rf"2\.0 +{re.escape(row['energy_error'])} +{re.escape(true)}"
+        self.assertRegex(said, rf"(?m)^ +{numbers}  energy_error of verlet")
+        self.assertNotIn("force_evaluations", said)  # is the same
+        self.assertEqual(before, {file: file.read_bytes() for file in (folder / "DATA").rglob("*.*")})
+        self.assertTrue((folder / "REPEATED/tiny/comparison.csv").exists())
+        # Without a name there is nothing to do, and --again measures for the pages.
+        self.assertEqual("", self.printed_by())
+        self.printed_by("tiny", "--again")
+        self.assertEqual(studies.processor(), study.record["processor"])
+
+    def printed_by(self, *words):
+        """What ./run studies prints with these words."""
+        with mock.patch("sys.argv", ["studies.py", *words]), redirect_stdout(StringIO()) as printed:
+            self.assertEqual(0, studies.main())
+        return printed.getvalue()
+
+
+class Repeated(unittest.TestCase):
+    """Tables of a study then and now."""
+
+    def test_rows_are_found_by_what_was_asked_for(self):
+        run = {"method": "dprkn8", "outcome": "reached_end", "rate": "1", "knob": "rtol", "time_s": "2"}
+        then = [{**run, "value": value} for value in ("0.1", "0.01")]
+        now = [{**row, "rate": "5", "time_s": "3"} for row in then[::-1]]
+        figures, gone, new = repeated.compared("summary.csv", then, now + [{**run, "value": "1e-3"}])
+        self.assertEqual((0, 1), (gone, new))
+        seen = {(one.column, one.key, one.ratio) for one in figures}
+        keys = [f"dprkn8 rtol {value}" for value in ("0.1", "0.01")]
+        self.assertEqual({(c, k, r) for k in keys for c, r in (("rate", 5), ("time_s", 1.5))}, seen)
+
+    def test_ratios_come_first(self):
+        then = [{"scene": "cloth", "time_s": "1", "margin": "2", "method": "verlet"}]
+        now = [{**then[0], "time_s": "3", "margin": "2.2"}]
+        figures, _, _ = repeated.compared("crossover.csv", then, now)
+        self.assertEqual(["margin", "time_s"], [one.column for one in figures])
+
+    def test_many_figures_are_summed_up_by_column(self):
+        then = [{"nodes": str(n), "seconds": "2", "verdict": "lives"} for n in range(1, 202)]
+        now = [{**row, "seconds": str(2 * int(row["nodes"]))} for row in then]
+        now[6]["verdict"] = "dies"
+        figures, _, _ = repeated.compared("modal.csv", then, now)
+        lines = [" ".join(line.split()) for line in repeated.figure_lines(figures)]
+        # The ratios are 1 to 201: the median is 101 and the quartiles 51 and 151, in two digits.
+        self.assertIn("100 51 150 200 of 201 seconds", lines)
+        self.assertIn("7: lives, now dies", lines)
+        self.assertEqual(4, len(lines))
+
+    def test_text_is_compared_by_line(self):
+        self.assertEqual(["  prints the same"], list(repeated.text_lines("a\nb\n", "a\nb\n")))
+        found = list(repeated.text_lines("a\nb\n", "a\nc\nd\n"))
+        self.assertEqual(["  then: b", "  now:  c", "  then: ", "  now:  d"], found)
 
 
 class Form(unittest.TestCase):
