@@ -41,6 +41,11 @@ def runs(study):
     return view(study).runs
 
 
+def methods_on(study):
+    """How many methods a chart has: those whose needs its scene meets."""
+    return len({run.method for run in runs(study)})
+
+
 def ranked(study, accuracy):
     """The fastest run of each method that reaches an accuracy on a chart, the fastest first."""
     for known, found in view(study).ranked.items():

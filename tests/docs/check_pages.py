@@ -15,6 +15,7 @@ from unittest import mock
 import chart_data
 import page_data
 import page_text
+import render
 import repeated
 import studies
 import study as entries
@@ -270,6 +271,25 @@ class Words(unittest.TestCase):
                              (-0.25, "−0.25"), (float("inf"), "∞"), (1e-4, "1e-4"), (0.996, "1.0")):  # fmt: skip
             self.assertEqual(words, page_data.figures(value))
         self.assertEqual(("1e-3", "97 %"), (page_data.accuracy(0.001), page_data.percent(0.974)))
+
+    def test_a_page_names_a_study_a_processor_and_a_date_once(self):
+        records = {
+            name: {"processor": processor, "date": date}
+            for name, processor, date in (
+                ("a", "abacus", "1"), ("b", "abacus", "1"), ("c", "abacus", "2"), ("d", "slide rule", "2"),
+            )
+        }  # fmt: skip
+        with mock.patch.object(page_data, "record", records.get), mock.patch.object(
+            page_data, "said_on_page", set()
+        ):
+            said = [page_data.made(*names) for names in ("a", "a", "ab", "c", "ad", "abcd")]
+        self.assertEqual(
+            ["(`./run studies a`; one core of an abacus, 1)", page_data.UNSAID, "(`./run studies b`)",
+             "(`./run studies c`; 2)", "(`./run studies d`; one core of an slide rule)", page_data.UNSAID],
+            said,
+        )  # fmt: skip
+        page = f"Forces {page_data.UNSAID}: one\n{page_data.UNSAID}.\n\n{page_data.UNSAID}\n\nEnd\n"
+        self.assertEqual("Forces: one.\n\nEnd\n", render.without_unsaid(page))
 
     def test_what_is_not_there_is_an_error(self):
         for call in (
