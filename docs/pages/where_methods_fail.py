@@ -1,10 +1,8 @@
 """The numbers of the page on failures."""
 
 import method_pages
-from page_data import NOTHING, figures, row, rows
+from page_data import figures, row, rows
 
-HELD = ["bounded", "leaked", "over_budget"]
-GROWN = ["gained", "diverged"]
 WORDS = {"newton_failed": "Newton failed", "indefinite_matrix": "matrix indefinite"}
 
 
@@ -13,25 +11,11 @@ def outcome_words(outcome):
     return WORDS.get(outcome, outcome)
 
 
-def has_grown(run):
-    return run["outcome"] in GROWN
-
-
 def limit_of(method):
     """The largest stable h ω by theory; beyond all numbers where there is none."""
     return float(
         row("stability_cloth", "limits.csv", method=method)["h_omega_limit_predicted"] or 1e99
     )
-
-
-def first_failure(runs):
-    """The failing run of the least h ω, and how it fails."""
-    failed = [run for run in runs if run["outcome"] not in HELD]
-    if not failed:
-        return NOTHING
-    first = min(failed, key=lambda run: float(run["h_omega"]))
-    grown = f", × {figures(first['energy_max'])}" if has_grown(first) else ""
-    return f"{figures(first['h_omega'])}: {outcome_words(first['outcome'])}{grown}"
 
 
 def damping(mode):

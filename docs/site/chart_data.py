@@ -1,12 +1,13 @@
-"""What charts say: their runs, the fastest of them at an accuracy, and where one kind of methods
-overtakes another."""
+"""What charts say: their runs, the fastest of them at an accuracy, and at which stiffness ratios one
+kind of methods leads."""
 
 import functools
+import itertools
 import math
 import sys
 from dataclasses import dataclass
 
-from page_data import DATA, NOTHING, ROOT, BadPage, record, rows, seconds, small, times
+from page_data import DATA, NOTHING, ROOT, BadPage, record, row, rows, seconds, small, times
 
 sys.path.append(str(ROOT / "experiments/plot"))
 from record import read_record  # noqa: E402 (the pictures' own reader of work_precision's record)
@@ -40,6 +41,11 @@ def runs(study):
     return view(study).runs
 
 
+def methods_on(study):
+    """How many methods a chart has: those whose needs its scene meets."""
+    return len({run.method for run in runs(study)})
+
+
 def ranked(study, accuracy):
     """The fastest run of each method that reaches an accuracy on a chart, the fastest first."""
     for known, found in view(study).ranked.items():
@@ -68,24 +74,43 @@ def ratio(slow, fast):
     return times(slow.seconds / fast.seconds) if slow and fast else NOTHING
 
 
-def crossing(study, accuracy, fast="implicit", slow="explicit"):
-    """The stiffness ratio from which on the fastest method of one kind takes less time than that of
-    the other, on a line between the measured ratios in logarithms; nan where it never does. Ratios
-    at which neither reaches the accuracy say nothing."""
-    at = {}
-    for cell in rows(study, "kinds.csv", accuracy=accuracy):
-        seconds_of = float(cell["time_s"] or "inf") if cell["method"] else math.inf
-        at.setdefault(float(cell["stiffness_ratio"]), {})[cell["kind"]] = seconds_of
-    known = [(r, t) for r, t in sorted(at.items()) if min(t[slow], t[fast]) < math.inf]
-    ahead = [(r, math.log(t[slow]) - math.log(t[fast])) for r, t in known]
-    behind = [i for i, (_, lead) in enumerate(ahead) if not lead > 0]
-    last = max(behind, default=-1)
-    if last + 1 >= len(ahead):
-        return math.nan
-    if last < 0:
-        return ahead[0][0]
-    (low, lead_low), (high, lead_high) = ahead[last : last + 2]
-    if not math.isfinite(lead_low) or not math.isfinite(lead_high):
-        return high
-    share = lead_low / (lead_low - lead_high)
-    return low * (high / low) ** share
+# One kind of methods leads where every other takes at least that many times as long. The times of a
+# study that is repeated differ by some per cent, so a smaller lead is nobody's.
+CLEAR_LEAD = 1.1
+
+
+def leaders(study, accuracy, kinds=("explicit", "implicit", "split")):
+    """The kind that clearly takes the least time of these at each measured stiffness ratio, the least
+    ratio first: {ratio: kind}, or None for a kind where none leads. Ratios at which none of them
+    reaches the accuracy say nothing and are left out."""
+    times_at = {}
+    for cell in rows(study, "kinds.csv", accuracy=accuracy, kind=kinds):
+        if cell["method"]:
+            own = times_at.setdefault(float(cell["stiffness_ratio"]), {})
+            own[cell["kind"]] = float(cell["time_s"])
+    found = {}
+    for stiffness, own in sorted(times_at.items()):
+        first, *others = sorted(own, key=own.get)
+        is_clear = all(own[other] >= CLEAR_LEAD * own[first] for other in others)
+        found[stiffness] = first if is_clear else None
+    return found
+
+
+def leads_to(study, accuracy, kind, **among):
+    """The largest measured ratio up to which a kind leads at each one; None where it does not lead at
+    the least."""
+    led = itertools.takewhile(lambda at: at[1] == kind, leaders(study, accuracy, **among).items())
+    return max((stiffness for stiffness, _ in led), default=None)
+
+
+def leads_from(study, accuracy, kind, **among):
+    """The least measured ratio from which on a kind leads at each one; None where it does not lead at
+    the largest."""
+    found = reversed(leaders(study, accuracy, **among).items())
+    led = itertools.takewhile(lambda at: at[1] == kind, found)
+    return min((stiffness for stiffness, _ in led), default=None)
+
+
+def fastest_at(study, stiffness, accuracy):
+    """The fastest method of all at a measured stiffness ratio."""
+    return row(study, "crossover.csv", stiffness_ratio=stiffness, accuracy=accuracy)["method"]

@@ -97,19 +97,26 @@ def processor(study):
     return record(study)["processor"]
 
 
-said_on_page = set()  # processors and dates that the page at hand has named; render.py clears it
+UNSAID = "\0"  # stands where made() has nothing to say, until render.py takes it out
+said_on_page = set()  # studies, processors and dates that the page at hand has named; render.py clears it
 
 
 def made(*studies):
-    """The line under a table: the command that makes it anew and, where the page has not said so yet,
-    the processor and when that was."""
-    first = record(studies[0])
-    dates = sorted({record(study)["date"] for study in studies})
-    when = dates[0] if len(dates) == 1 else f"{dates[0]} to {dates[-1]}"
-    where = f"; one core of an {first['processor']}, {when}"
-    is_said = where in said_on_page
-    said_on_page.add(where)
-    return f"(`./run studies {' '.join(studies)}`{'' if is_said else where})"
+    """The words under a table: the command that measures it again, the processor and the date. Each
+    study, processor and date is named once on a page; nothing is left where all were."""
+    new = [study for study in studies if study not in said_on_page]
+    if not new:
+        return UNSAID
+    processors = sorted({record(study)["processor"] for study in new})
+    dates = sorted({record(study)["date"] for study in new})
+    words = [f"`./run studies {' '.join(new)}`"]
+    if not said_on_page.issuperset(processors):
+        words.append(f"one core of an {' and an '.join(processors)}")
+    if not said_on_page.issuperset(dates):
+        words.append(" to ".join(dict.fromkeys((dates[0], dates[-1]))))
+    said_on_page.update(new, processors, dates)
+    command_words, *where = words
+    return f"({command_words}{'; ' if where else ''}{', '.join(where)})"
 
 
 @functools.cache

@@ -10,6 +10,7 @@ chart_data.py offer, and what a Python file of its own name beside it defines.
 """
 
 import inspect
+import re
 import runpy
 import sys
 
@@ -19,13 +20,14 @@ import chart_data
 import energy_words
 import method_pages
 import page_data
+import whole_runs
 from page_data import ROOT
 
 PAGES = ROOT / "docs/pages"
 # The functions that a template can call.
 CALLS = {
     name: call
-    for module in (page_data, chart_data, energy_words)
+    for module in (page_data, chart_data, energy_words, whole_runs)
     for name, call in vars(module).items()
     if inspect.isroutine(call) or hasattr(call, "cache_clear")
 }
@@ -65,8 +67,14 @@ def rendered():
         page_data.said_on_page.clear()
         notice = NOTICE.format(source=f"docs/pages/{template}")
         file = ROOT / ("" if page == "README.md" else "docs") / page
-        pages[file] = notice + jinja.get_template(template).render(**values)
+        pages[file] = notice + without_unsaid(jinja.get_template(template).render(**values))
     return pages
+
+
+def without_unsaid(page):
+    """A page without the places where `made` had nothing to say, and the spaces or lines before."""
+    page = re.sub(rf"^{page_data.UNSAID}\n+", "", page, flags=re.MULTILINE)
+    return re.sub(rf"\s?{page_data.UNSAID}", "", page)
 
 
 class NotMeasured(jinja2.ChainableUndefined):
@@ -102,11 +110,11 @@ def draft(name):
     jinja = environment({name: drafted(call) for name, call in CALLS.items()})
     for method in method_pages.all_methods():
         if method.name == name:
-            return jinja.get_template("method.md").render(method=method)
+            return without_unsaid(jinja.get_template("method.md").render(method=method))
     own = {
         key: drafted(value) if callable(value) else value for key, value in own_calls(name).items()
     }
-    return jinja.get_template(name).render(own)
+    return without_unsaid(jinja.get_template(name).render(own))
 
 
 def main():

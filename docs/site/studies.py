@@ -2,8 +2,10 @@
 
     ./run studies                  all that are not measured yet, or whose commands, scene files or
                                    needed studies have changed
-    ./run studies cloth bench      these alone, whatever there is
-    ./run studies --again cloth    these from the start, interrupted or not
+    ./run studies cloth bench      these alone. One that need not be measured is repeated beside what
+                                   docs/data keeps: in results/repeated/NAME, and each figure is
+                                   printed then and now
+    ./run studies --again cloth    these from the start, interrupted or not, for docs/data
     ./run studies --list           what there is, and how long each took
     ./run studies --check          which are to be measured (status 1 where one is), and how many
                                    commits changed the code of the others since
@@ -26,14 +28,19 @@ import time
 
 import study as entries
 from processor import processor
+from repeated import comparison
 from study import BIN, ROOT, keep, read_studies, run, source_hash, write_whole
 
 
-def draw(study):
-    """Draws the results of a study and keeps the pictures."""
+def draw_there(study):
+    """Draws the results of a study in its folder."""
     if study.draws:
         for program in study.programs:
             run(study, f"experiments/{program}/{program}.py {os.path.relpath(study.folder, ROOT)}")
+
+
+def keep_pictures(study):
+    """Copies the pictures of a study into docs/pictures."""
     for drawn, name in study.pictures.items():
         keep(study.folder / f"{drawn}.png", entries.PICTURES / f"{name}.png")
 
@@ -64,6 +71,15 @@ def measure(study, again):
     return printed, seconds
 
 
+def measure_there(study, again):
+    """Measures a study and draws it, all in its folder; returns the seconds that it took."""
+    printed, seconds = measure(study, again)
+    if study.text:
+        write_whole(study.folder / study.text, printed)
+    draw_there(study)
+    return seconds
+
+
 def built(study):
     """The compiler, version and sources of the programs that measured, as its sidecars say; of a study
     without sidecars as `simulate --version` says, which names no hash of sources."""
@@ -84,11 +100,11 @@ def make(study, again):
         if not needed.folder.exists():
             make(needed, again=False)
     inputs = study.inputs
-    printed, seconds = measure(study, again)
+    seconds = measure_there(study, again)
+    keep_pictures(study)
     if study.text:
-        write_whole(study.folder / study.text, printed)
+        printed = (study.folder / study.text).read_bytes()
         write_whole(study.data / study.text, printed)
-    draw(study)
     for pattern in study.tables:
         for table in sorted(study.folder.glob(pattern)):
             keep(table, study.data / table.name, study.columns.get(table.name))
@@ -96,6 +112,20 @@ def make(study, again):
     record = {**inputs, **when, "processor": processor(), **built(study)}
     write_whole(study.data / "study.json", json.dumps(record, indent=1) + "\n")
     (study.folder / "begun.json").unlink()
+
+
+def repeat(study):
+    """Measures a study beside what docs/data keeps of it, which stays, and prints both. What it needs
+    is repeated before it, where that was not done."""
+    other = study.repeat()
+    needs = [read_studies()[name].repeat() for name in study.needs]
+    for one in [needed for needed in needs if not needed.is_complete] + [other]:
+        measure_there(one, again=False)
+        (one.folder / "begun.json").unlink()
+    for line in comparison(study, other):
+        print(line)
+    for drawn in study.pictures:
+        print(f"Picture: {other.folder / drawn}.png")
 
 
 def show(studies):
@@ -150,12 +180,17 @@ def main():
     if arguments.draw:
         for study in chosen.values():
             if study.pictures and study.folder.exists():
-                draw(study)
+                draw_there(study)
+                keep_pictures(study)
         return 0
     for position, study in enumerate(chosen.values(), 1):
-        if arguments.names or arguments.again or study.due():
+        is_due = arguments.again or study.due()
+        if is_due or arguments.names:
             print(f"{position}/{len(chosen)} {study.name}: {'; '.join(study.commands)}", flush=True)
-            make(study, arguments.again)
+            if is_due:
+                make(study, arguments.again)
+            else:
+                repeat(study)
     return 0
 
 

@@ -7,6 +7,7 @@ commits changed it, and who measures judges whether they can change a number.
 """
 
 import csv
+import dataclasses
 import functools
 import hashlib
 import io
@@ -22,7 +23,9 @@ from pathlib import Path
 
 from page_data import DATA, ROOT
 
-PICTURES, RESULTS = ROOT / "docs/pictures", ROOT / "results/studies"
+PICTURES = ROOT / "docs/pictures"
+# The folders in which studies are measured for docs/data, and repeated beside it.
+MEASURED, REPEATED = "results/studies", "results/repeated"
 BIN = Path(os.environ.get("QDDOT_BIN", ROOT / "build/bin"))
 PYTHON_PATH = ("experiments/plot", "experiments/sweep", "build/python")
 # Left out of sidecars: states of all nodes, and the command with the folders of the machine.
@@ -42,10 +45,21 @@ class Study:
     needs: list = field(default_factory=list)  # studies whose results it reads
     columns: dict = field(default_factory=dict)  # of a large table, those that pages read
     quick: bool = False  # whether it takes no time, so that its text is compared each time
+    room: str = ""  # the folder of the project in which its own lies; MEASURED by default
 
     @property
     def folder(self):
-        return RESULTS / self.name
+        return ROOT / (self.room or MEASURED) / self.name
+
+    def repeat(self):
+        """The same study in another folder, so that the one which docs/data was made of stays."""
+        commands = [line.replace(MEASURED + "/", REPEATED + "/") for line in self.commands]
+        return dataclasses.replace(self, commands=commands, room=REPEATED)
+
+    @property
+    def is_complete(self):
+        """Whether its folder has all that it measures."""
+        return self.folder.exists() and not (self.folder / "begun.json").exists()
 
     @property
     def data(self):

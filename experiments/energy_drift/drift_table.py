@@ -5,7 +5,8 @@ import math
 from measurements import optional
 from style import COOL, FAINT, INK, WARM, number
 
-TABLE_LEFT, TABLE_WIDTH = 7.55, 4.9
+# The two columns of the table: their left ends and widths, and where numbers begin in them.
+LEFTS, COLUMN_WIDTH, NUMBERS = (0.25, 4.7), 4.1, 1.95
 ROW, HEADING, GROUP_GAP = 0.172, 0.26, 0.1
 FONT_SIZE = 9
 
@@ -43,7 +44,8 @@ def measure_words(row):
         return ""
     if row["fate"] == "drifts":
         half = (float(row["drift_rate_high"]) - float(row["drift_rate_low"])) / 2
-        return f"{number(value)} ± {number(half)} /s"
+        digit = float(f"{half:.0e}")
+        return f"{number(value)} ± {number(digit)} /s"
     if row["fate"] == "blows_up":
         rate = optional(row["exponential_rate"])
         return f"at {number(value)} s" + ("" if math.isnan(rate) else f", {number(rate)} /s")
@@ -65,32 +67,55 @@ def groups_of(rows):
             yield fate, own
 
 
+def group_height(own):
+    """The height of a group in inches."""
+    return HEADING + ROW * len(own) + GROUP_GAP
+
+
+def columns_of(rows):
+    """The groups in two columns, as even as they can be."""
+    groups = list(groups_of(rows))
+    splits = [(groups[:count], groups[count:]) for count in range(1, len(groups) + 1)]
+    return min(splits, key=lambda split: max(map(column_height, split)))
+
+
+def column_height(groups):
+    """The height of some groups in inches."""
+    return sum(group_height(own) for _, own in groups)
+
+
 def table_height(rows):
     """The height in inches."""
-    return sum(HEADING + ROW * len(own) + GROUP_GAP for _, own in groups_of(rows))
+    return max(map(column_height, columns_of(rows)))
 
 
 def draw_table(sheet, top, rows, until):
     """The verdicts."""
+    for left, groups in zip(LEFTS, columns_of(rows)):
+        line = top
+        for fate, own in groups:
+            draw_group(sheet, left, line, fate, own, until)
+            line += group_height(own)
+
+
+def draw_group(sheet, left, top, fate, own, until):
+    """The verdicts of one fate."""
     middle = {"va": "center", "size": FONT_SIZE}
-    for fate, own in groups_of(rows):
-        title, meaning, color, _ = FATES[fate]
-        bar = sheet.axes(TABLE_LEFT, top, 0.07, HEADING + ROW * len(own))
-        bar.set_axis_off()
-        bar.axvspan(0, 1, color=color)
-        line = top + HEADING / 2
-        count = f"{title} ({len(own)})"
-        sheet.text(TABLE_LEFT + 0.17, line, count, color=color, weight="bold", **middle)
-        sheet.text(TABLE_LEFT + 2.45, line, meaning, color=FAINT, **middle)
-        top += HEADING
-        for row in own:
-            line = top + ROW / 2
-            sheet.text(TABLE_LEFT + 0.17, line, label(row), color=INK, **middle)
-            sheet.text(TABLE_LEFT + 2.45, line, measure_words(row), color=INK, **middle)
-            right = {"color": FAINT, "ha": "right"} | middle
-            sheet.text(TABLE_LEFT + TABLE_WIDTH, line, remark(row, until), **right)
-            top += ROW
-        top += GROUP_GAP
+    title, meaning, color, _ = FATES[fate]
+    bar = sheet.axes(left, top, 0.07, HEADING + ROW * len(own))
+    bar.set_axis_off()
+    bar.axvspan(0, 1, color=color)
+    line = top + HEADING / 2
+    right = {"color": FAINT, "ha": "right"} | middle
+    sheet.text(left + 0.17, line, f"{title} ({len(own)})", color=color, weight="bold", **middle)
+    sheet.text(left + COLUMN_WIDTH, line, meaning, **right)
+    top += HEADING
+    for row in own:
+        line = top + ROW / 2
+        sheet.text(left + 0.17, line, label(row), color=INK, **middle)
+        sheet.text(left + NUMBERS, line, measure_words(row), color=INK, **middle)
+        sheet.text(left + COLUMN_WIDTH, line, remark(row, until), **right)
+        top += ROW
 
 
 def remark(row, until):

@@ -1,10 +1,10 @@
 """Draws where each method's energy goes over a long run of one scene.
 
 Call: energy_drift.py DIR, the folder with drift.csv, summary.csv and tolerance.csv of the program
-energy_drift; writes DIR/energy_drift.png and DIR/energy_drift.svg. The upper left panel shows the
-size of the energy error over time for some methods of each verdict. The lower left one shows that
-of the adaptive methods over their tolerance. The right one shows the verdict on every method. Each
-verdict has one colour in all three.
+energy_drift; writes DIR/energy_drift.png and DIR/energy_drift.svg. The upper panel shows the size of
+the energy error over time for some methods of each verdict. The one below shows that of the adaptive
+methods over their tolerance. A table has the verdict on every method. Each verdict has one colour in
+all three.
 """
 
 import sys
@@ -19,11 +19,11 @@ from names import shown
 from sheet import Sheet, main
 from style import FAINT, GRID, log_ticks, number
 
-WIDTH = 12.6
-LEFT, PANEL_WIDTH, LABELS = 0.75, 4.75, 1.6
-TOP, PANEL_HEIGHT, DOWN, TOLERANCE_HEIGHT = 1.15, 4.3, 0.95, 2.35
-FONT_SIZE, SMALL = 9, 8.5
-LABEL_STEP = 0.15
+WIDTH = 8.95
+LEFT, PANEL_WIDTH, LABELS = 0.75, 6.35, 1.6
+TOP, PANEL_HEIGHT, DOWN, TOLERANCE_HEIGHT, FOOT = 1.35, 4.3, 0.95, 2.35, 0.65
+SMALL = 9
+LABEL_STEP = 0.16
 MOST_LINES, MOST_TOLERANCE_LABELS = 11, 14
 # Below this an error is not told from none.
 LEAST = 1e-17
@@ -237,21 +237,19 @@ def draw(folder):
     drift = {run: np.array(path) for run, path in drift.items()}
     rows = one_a_method(summary)
     has_tolerances = any(row["knob"] == "rtol" for row in summary)
-    panels = TOP + PANEL_HEIGHT + 0.65 + (DOWN - 0.1 + TOLERANCE_HEIGHT if has_tolerances else 0)
-    sheet = Sheet(WIDTH, max(panels, TOP + table_height(rows)))
+    panels = TOP + PANEL_HEIGHT + (DOWN + TOLERANCE_HEIGHT if has_tolerances else 0) + FOOT
+    sheet = Sheet(WIDTH, panels + table_height(rows) + 0.1)
     until, h = origin["until"], origin["step_size"]
     title = f"{shown(origin['scene']['name'])}: where the energy goes"
-    words = (
-        f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s; "
-        "errors E(t) − E(0) as parts of the largest kinetic energy, "
-        f"{number(origin['energy_scale'])} J"
-    )
-    sheet.head(0.15, (0.25, 14, title), (0.52, 10, words))
-    sheet.rule(0.7)
+    run = f"{number(until / h)} steps of h = {number(h)} s, to t = {number(until)} s"
+    scale = f"{number(origin['energy_scale'])} J"
+    errors = f"errors E(t) − E(0) as parts of the largest kinetic energy, {scale}"
+    sheet.head(0.15, (0.25, 14, title), (0.52, 10, run), (0.72, 10, errors))
+    sheet.rule(0.9)
     draw_paths(sheet, rows, drift)
     if has_tolerances:
         draw_tolerances(sheet, TOP + PANEL_HEIGHT + DOWN, summary)
-    draw_table(sheet, TOP - 0.3, rows, until)
+    draw_table(sheet, panels, rows, until)
     sheet.save_as(folder, "energy_drift")
 
 

@@ -2,8 +2,8 @@
 
 Call: scaling.py DIR, the folder with scaling.csv, exponents.csv and roofline.csv of the program
 scaling; writes DIR/scaling.png and DIR/scaling.svg. Above, a panel a scene: seconds of each phase
-over nodes, on wide lines of theory's slopes. Below, springs a second against what memory and the
-processor allow, the memory of a step, and the exponents against theory's.
+over nodes, on wide lines of theory's slopes, and the exponents against theory's. Below, springs a
+second against what memory and the processor allow, and the memory of a step.
 """
 
 import numpy as np
@@ -14,10 +14,14 @@ from measurements import read_facts, read_table
 from sheet import Sheet, main
 from style import FAINT, GRID, INK, Family, Look, decades, power_of_ten, seconds
 
-WIDTH, HEIGHT = 13.2, 9.3
-LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.95, 1.5, 3.9, 3.4
-ACROSS, BELOW, LOWER_HEIGHT = 0.2, 5.75, 2.9
-ROOF_WIDTH, MEMORY_WIDTH, MEMORY_LEFT, EXPONENTS_LEFT = 4.3, 2.95, 6.15, 9.55
+# Two panels in each row: the scenes and the exponents above, f and the memory of the factors below.
+WIDTH = 9.1
+LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.95, 1.5, 3.8, 3.4
+ACROSS, DOWN, LOWER_HEIGHT = 0.3, 0.95, 2.9
+ROOF_WIDTH, MEMORY_LEFT, MEMORY_WIDTH = 3.65, 5.75, 3.2
+# The names of the phases, left of the exponents.
+NAMES = 1.25
+FOOT = 0.65
 FONT_SIZE = 9
 EXPONENTS_SHOWN = 0.6, 2.4
 
@@ -145,8 +149,14 @@ def nodes_words(value):
     return f"{value:,.0f}" if value < 1e4 else power_of_ten(value)
 
 
+def place_of(panel):
+    """The left and the top of a panel of the upper rows, by its number."""
+    row, column = divmod(panel, 2)
+    return LEFT + column * (PANEL_WIDTH + ACROSS), TOP + row * (PANEL_HEIGHT + DOWN)
+
+
 def draw_scenes(sheet, rows, origin):
-    """The upper row: a panel a scene, all with the same axes."""
+    """A panel a scene, all with the same axes."""
     lines = series(rows)
     scenes = [scene for scene in SCENES if any(key[0] == scene for key in lines)]
     implicit = next((key[1] for key in lines if key[2] == "factorization"), None)
@@ -156,16 +166,16 @@ def draw_scenes(sheet, rows, origin):
     )
     panels = []
     for i, scene in enumerate(scenes):
-        left = LEFT + i * (PANEL_WIDTH + ACROSS)
-        axes = sheet.axes(left, TOP, PANEL_WIDTH, PANEL_HEIGHT)
+        left, top = place_of(i)
+        axes = sheet.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT)
         decades(axes, nodes_words, seconds, FONT_SIZE)
         panels.append((axes, draw_scene(axes, scene, lines, implicit, explicit)))
-        sheet.text(left, TOP - 0.12, scene, size=11, weight="bold", color=INK)
+        sheet.text(left, top - 0.12, scene, size=11, weight="bold", color=INK)
         cut = [c for c in origin["left_out"] if c["scene"] == scene]
         cut = [c["nodes"] for c in cut if c["method"] in (implicit, "")]
         if cut:
             words = f"{implicit} left out from {cut[0]:,.0f} nodes on"
-            axes.text(0.99, 0.02, words, size=8, color=FAINT, ha="right", transform=axes.transAxes)
+            axes.text(0.99, 0.02, words, size=8.5, color=FAINT, ha="right", transform=axes.transAxes)
     reach = [
         [f(a.get_xlim()[i] for a, _ in panels) for i, f in enumerate((min, max))],
         [f(a.get_ylim()[i] for a, _ in panels) for i, f in enumerate((min, max))],
@@ -174,23 +184,21 @@ def draw_scenes(sheet, rows, origin):
         axes.set_xlim(*reach[0])
         axes.set_ylim(*reach[1])
         axes.set_xlabel("nodes", fontsize=10)
-        axes.tick_params(labelleft=i == 0)
+        axes.tick_params(labelleft=i % 2 == 0)
+        if i % 2 == 0:
+            axes.set_ylabel(f"time of a step of {implicit or explicit}", fontsize=10)
         label_series(axes, drawn)
-    if panels:
-        panels[0][0].set_ylabel(f"time of a step of {implicit or explicit}", fontsize=10)
-
-
 def springs_words(value):
     """A rate of springs."""
     return f"{value / 1e9:g} G/s" if value >= 1e9 else f"{value / 1e6:g} M/s"
 
 
-def draw_roofline(sheet, rows):
+def draw_roofline(sheet, top, rows):
     """Springs a second over the memory that f reads and writes, and what the machine allows."""
-    axes = sheet.axes(LEFT, BELOW, ROOF_WIDTH, LOWER_HEIGHT)
+    axes = sheet.axes(LEFT, top, ROOF_WIDTH, LOWER_HEIGHT)
     decades(axes, memory_words, springs_words, FONT_SIZE)
     axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
-    sheet.text(LEFT, BELOW - 0.15, "f against the machine", size=11, weight="bold", color=INK)
+    sheet.text(LEFT, top - 0.5, "f against the machine", size=11, weight="bold", color=INK)
     drawn = []
     for scene, look in SCENES.items():
         own = [row for row in rows if row["scene"] == scene]
@@ -214,7 +222,7 @@ def draw_roofline(sheet, rows):
     words = (
         "dotted: what the triad's bandwidth and the\n" "peak of multiplications and additions allow"
     )
-    sheet.text(LEFT + 2.0, BELOW - 0.07, words, size=8, color=FAINT, va="bottom")
+    sheet.text(LEFT, top - 0.07, words, size=FONT_SIZE, color=FAINT, va="bottom")
     label_series(axes, drawn)
 
 
@@ -226,12 +234,12 @@ def memory_words(value):
     return f"{value:g} B"
 
 
-def draw_memory(sheet, rows):
+def draw_memory(sheet, top, rows):
     """The bytes of the factors over the nodes, with theory's growth."""
-    axes = sheet.axes(MEMORY_LEFT, BELOW, MEMORY_WIDTH, LOWER_HEIGHT)
+    axes = sheet.axes(MEMORY_LEFT, top, MEMORY_WIDTH, LOWER_HEIGHT)
     decades(axes, nodes_words, memory_words, FONT_SIZE)
     words = "Memory of the factors"
-    sheet.text(MEMORY_LEFT, BELOW - 0.15, words, size=11, weight="bold", color=INK)
+    sheet.text(MEMORY_LEFT, top - 0.12, words, size=11, weight="bold", color=INK)
     drawn = []
     for (scene, _, phase), points in series(rows, "bytes").items():
         if phase != "factorization":
@@ -243,8 +251,8 @@ def draw_memory(sheet, rows):
     label_series(axes, drawn)
 
 
-def draw_exponents(sheet, rows):
-    """The exponents with their intervals, and theory's as ticks, a row a phase."""
+def draw_exponents(sheet, place, rows):
+    """The exponents with their intervals, and theory's as ticks, a row a phase, at a left and a top."""
     names = {
         "symbolic": "analysis",
         "force": "f",
@@ -253,10 +261,9 @@ def draw_exponents(sheet, rows):
         "solve": "solve",
         "fill": "factors' memory",
     }
-    axes = sheet.axes(EXPONENTS_LEFT + 1.15, BELOW, WIDTH - EXPONENTS_LEFT - 1.35, LOWER_HEIGHT)
-    sheet.text(
-        EXPONENTS_LEFT, BELOW - 0.15, "Exponents, and theory's", size=11, weight="bold", color=INK
-    )
+    left, top = place
+    axes = sheet.axes(left + NAMES, top, PANEL_WIDTH - NAMES, PANEL_HEIGHT)
+    sheet.text(left, top - 0.12, "Exponents, and theory's", size=11, weight="bold", color=INK)
     implicit = next((r["method"] for r in rows if r["phase"] == "factorization"), None)
     own = [row for row in rows if row["method"] == implicit and row["phase"] in names]
     for row in own:
@@ -281,7 +288,10 @@ def draw(folder):
     """Draws the picture."""
     origin = read_facts(folder / "scaling.json")
     rows = read(folder / "scaling.csv")
-    sheet = Sheet(WIDTH, HEIGHT)
+    scenes = len({row["scene"] for row in rows} & set(SCENES))
+    # The exponents stand behind the scenes.
+    below = place_of(2 * (scenes // 2))[1] + PANEL_HEIGHT + DOWN + 0.35
+    sheet = Sheet(WIDTH, below + LOWER_HEIGHT + FOOT)
     largest = max(row["nodes"] for row in rows)
     smallest = min(row["nodes"] for row in rows)
     words = (
@@ -293,9 +303,9 @@ def draw(folder):
     sheet.head(0.2, (0.3, 15, title), (0.62, 10, words), (0.86, 10, theory))
     sheet.rule(1.04)
     draw_scenes(sheet, rows, origin)
-    draw_roofline(sheet, read(folder / "roofline.csv"))
-    draw_memory(sheet, rows)
-    draw_exponents(sheet, read(folder / "exponents.csv"))
+    draw_exponents(sheet, place_of(scenes), read(folder / "exponents.csv"))
+    draw_roofline(sheet, below, read(folder / "roofline.csv"))
+    draw_memory(sheet, below, rows)
     sheet.save_as(folder, "scaling")
 
 

@@ -13,12 +13,15 @@ from sheet import Sheet
 from style import COOL, FAINT, GRID, INK, MARKERS, WARM, Family, Look, log_ticks, number
 from style import short_names
 
-WIDTH = 12.85
-LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.75, 1.3, 6.2, 3.65
-DOWN = 1.05
-TABLE, TABLE_END, LINE = 7.95, 12.65, 0.168
-LIMIT_AT, DIFFERENCE_AT = 11.7, 12.65
-SIZE = 8.5
+WIDTH = 8.9
+LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.8, 1.45, 7.0, 3.65
+# What stands below a panel, with its axis' words, and the heading of the next part.
+FOOT, HEADING = 0.6, 0.55
+TABLE, TABLE_END, LINE, GAP = 0.25, 8.65, 0.18, 0.06
+LIMIT_AT, DIFFERENCE_AT = 7.5, TABLE_END
+# The names and the shares of rejected steps beside the dots, and the height of a row of dots.
+NAMES, REJECTED, DOT_ROW = 1.35, 0.75, 0.215
+SIZE = 9
 COLORS = tuple(color for pair in zip(WARM, COOL) for color in pair)
 # Curves that are nearer than this to each other count as one.
 SAME = 1e-6
@@ -149,30 +152,48 @@ class DampingSheet:
         self.curves = curves_of(linear, limits)
         self.modes = modes
         self.chosen = chosen
+        measure = Sheet(WIDTH, 1)
+        room = LIMIT_AT - 1.45 - TABLE - 0.36
+        self.names = [
+            measure.wrapped(short_names(curve.methods), room, size=SIZE) for curve in self.curves
+        ]
         self.sheet = Sheet(WIDTH, self.height())
 
+    def heights(self):
+        """The heights of the parts that there are: table, modes, and steps chosen by methods."""
+        chosen = self.chosen_rows()
+        count = len({row["method"] for row in chosen})
+        return {
+            "table": sum(LINE * len(words) + GAP for words in self.names) + 0.1,
+            "modes": PANEL_HEIGHT + FOOT if self.modes else 0,
+            "chosen": DOT_ROW * count + FOOT if chosen else 0,
+        }
+
     def height(self):
-        """The sheet's height; the lower half is left out where there is nothing in it."""
-        rows = 2 if self.modes or self.chosen else 1
-        return TOP + rows * PANEL_HEIGHT + (rows - 1) * DOWN + 0.75
+        """The sheet's height."""
+        parts = [part for part in self.heights().values() if part]
+        return TOP + PANEL_HEIGHT + FOOT + sum(parts) + HEADING * len(parts)
 
     def draw(self):
         """Everything."""
         scene = self.origin.get("scene", {}).get("name", "the scene")
-        title = f"{shown(scene)}: what methods do to vibrations, by linear theory and measured"
+        title = f"{shown(scene)}: what methods do to vibrations"
         words = (
-            "killed: loses nine tenths of its amplitude in a period; lives: keeps half of its energy "
-            "for ten periods and more; blows up: grows"
+            (0.53, 9.5, "lives: keeps half of its energy for ten periods and more; blows up: grows"),
+            (0.73, 9.5, "killed: loses nine tenths of its amplitude in a period"),
         )
-        self.sheet.head(0.15, (0.25, 14, title), (0.53, 9.5, words))
-        self.sheet.rule(0.72)
+        self.sheet.head(0.15, (0.25, 14, title), *words)
+        self.sheet.rule(0.9)
         self.draw_linear()
-        self.draw_table()
-        below = TOP + PANEL_HEIGHT + DOWN
+        heights = self.heights()
+        top = TOP + PANEL_HEIGHT + FOOT + HEADING
+        self.draw_table(top)
+        top += heights["table"] + HEADING
         if self.modes:
-            self.draw_modes(below)
-        if self.chosen:
-            self.draw_chosen(below)
+            self.draw_modes(top)
+            top += heights["modes"] + HEADING
+        if heights["chosen"]:
+            self.draw_chosen(top)
 
     def heading(self, left, top, words, note=""):
         """What a part shows: in bold, and more of it below."""
@@ -201,21 +222,14 @@ class DampingSheet:
             named.append((curve.name, curve.look, points))
         label_curves(axes, named)
 
-    def draw_table(self):
+    def draw_table(self, top):
         """The methods of each curve and their limits."""
-        self.heading(TABLE, TOP, "Methods of one curve, and the largest stable h ω")
+        self.heading(TABLE, top, "Methods of one curve, and the largest stable h ω")
         style = {"size": SIZE, "color": FAINT, "va": "center", "ha": "right"}
-        self.sheet.text(LIMIT_AT, TOP - 0.15, "theory", **style)
-        self.sheet.text(DIFFERENCE_AT, TOP - 0.15, "measured", **style)
-        top = TOP + 0.08
-        room = LIMIT_AT - 0.6 - TABLE - 0.35
-        names = [
-            self.sheet.wrapped(short_names(curve.methods), room, size=SIZE) for curve in self.curves
-        ]
-        # The panel is just high enough to end above the next one.
-        lines = sum(len(words) + 0.35 for words in names)
-        pitch = min(LINE, (PANEL_HEIGHT + DOWN - 0.6) / lines)
-        for curve, words_of_curve in zip(self.curves, names):
+        self.sheet.text(LIMIT_AT, top - 0.15, "theory", **style)
+        self.sheet.text(DIFFERENCE_AT, top - 0.15, "measured", **style)
+        top += 0.08
+        for curve, words_of_curve in zip(self.curves, self.names):
             line = Line2D(
                 [(TABLE + part) / WIDTH for part in (0, 0.14, 0.28)],
                 [1 - top / self.sheet.height] * 3,
@@ -234,8 +248,8 @@ class DampingSheet:
             for words in words_of_curve:
                 color = curve.look.text_color
                 self.sheet.text(TABLE + 0.36, top, words, color=color, **style)
-                top += pitch
-            top += 0.35 * pitch
+                top += LINE
+            top += GAP
 
     def draw_modes(self, top):
         """Damping over the frequencies of the scene: lines predicted, marks measured."""
@@ -254,18 +268,19 @@ class DampingSheet:
             if not rows:
                 continue
             points = self.predicted(curve, rows, h)
-            axes.plot(*zip(*points), **curve.line)
+            if points:
+                axes.plot(*zip(*points), **curve.line)
             seen = [row for row in rows if not math.isnan(row["damping_ratio_measured"])]
             for row in rows:
                 if row not in seen:
                     unmeasured[row["method"]] = row["verdict"]
             ends = ((r["damping_ratio_measured"], r["damping_ratio_predicted"]) for r in seen)
-            apart = max([apart, *(abs(measured - predicted) for measured, predicted in ends)])
+            apart = max([apart, *(abs(m - p) for m, p in ends if not math.isnan(p))])
             marks = [(row["omega"] / (2 * math.pi), row["damping_ratio_measured"]) for row in seen]
             all_marks += marks
             if marks:
                 axes.plot(*zip(*marks), linestyle="", zorder=4, **curve.look.marker_style(4.8))
-            if max(abs(y) for _, y in points + marks) > UNDAMPED:
+            if points and max(abs(y) for _, y in points + marks) > UNDAMPED:
                 named.append((curve.name, curve.look, sorted(points)))
         note = "lines predicted, marks measured by exciting the mode: "
         note += f"apart by at most {number(apart)}"
@@ -282,13 +297,18 @@ class DampingSheet:
         low, high = min(r["h_omega"] for r in rows), max(r["h_omega"] for r in rows)
         between = [(x * scale, y) for x, y in curve.between(low, high)]
         at = [(row["h_omega"] * scale, row["damping_ratio_predicted"]) for row in rows]
-        return sorted({*between, *at})
+        return sorted({*between, *(point for point in at if not math.isnan(point[1]))})
+
+    def chosen_rows(self):
+        """The rows of methods that choose their steps, at the tolerance that is drawn."""
+        rtols = {row["rtol"] for row in self.chosen}
+        rtol = min(rtols, key=lambda value: abs(math.log(value / RTOL)), default=math.nan)
+        return [row for row in self.chosen if math.isclose(row["rtol"], rtol)]
 
     def draw_chosen(self, top):
         """How long the steps are that methods choose beside a fast vibration that is hardly excited."""
-        rtols = sorted({row["rtol"] for row in self.chosen})
-        rtol = min(rtols, key=lambda value: abs(math.log(value / RTOL)))
-        rows = [row for row in self.chosen if math.isclose(row["rtol"], rtol)]
+        rows = self.chosen_rows()
+        rtol = rows[0]["rtol"]
         fast = sorted({row["omega_fast"] for row in rows})
         note = "at ω = " + ", ".join(f"{omega:g}" for omega in fast)
         note += ", from pale to dark; hollow: held at the limit; ×: failed"
@@ -297,8 +317,8 @@ class DampingSheet:
         methods = list(dict.fromkeys(row["method"] for row in rows))
         reach = {m: of_fastest[m]["h_omega_mean"] if m in of_fastest else 0 for m in methods}
         methods.sort(key=lambda m: reach[m] if reach[m] > 0 else 0)
-        left, right = TABLE + 1.05, TABLE_END - 0.65
-        axes = self.sheet.axes(left, top, right - left, PANEL_HEIGHT)
+        left, right = TABLE + NAMES, TABLE_END - REJECTED
+        axes = self.sheet.axes(left, top, right - left, DOT_ROW * len(methods))
         axes.set_xscale("log")
         axes.set_ylim(-0.6, len(methods) + 0.2)
         for j, method in enumerate(methods):

@@ -13,12 +13,12 @@ from names import shown
 from sheet import Sheet
 from style import FAINT, INK, number, power_of_ten, short_names
 
-COLUMNS = 6
+COLUMNS = 4
 PANEL, ACROSS, DOWN = 1.8, 0.25, 0.17
-LEFT, RIGHT, TOP, BOTTOM = 0.75, 0.2, 1.42, 0.12
+LEFT, RIGHT, HEAD, BOTTOM = 0.75, 0.2, 0.53, 0.12
 ROW, LEAST_HEIGHT, MOST_HEIGHT = 0.165, 0.5, 1.15
 HEADING, LINE, TICKS = 0.34, 0.165, 0.36
-NAME_SIZE, NOTE_SIZE, TICK_SIZE = 9, 8.5, 8
+NAME_SIZE, NOTE_SIZE, TICK_SIZE, HEAD_SIZE = 9, 8.5, 8.5, 9.5
 MOST_TICKS = 7
 # A panel of more cells than this is an image in the vector file too.
 MOST_SHAPES = 10000
@@ -26,8 +26,9 @@ MOST_SHAPES = 10000
 LIMIT = {"color": INK, "linewidth": 1.3, "linestyle": (0, (4, 2))}
 BUCKLING = {"color": INK, "linewidth": 1.3, "linestyle": (0, (1, 1.2))}
 UNFORESEEN = {"color": INK, "linewidth": 1.3}
-# The number of colours of the key in a line.
-KEYS = 7
+# The number of colours and lines of the key in a row, and the heights of the head's rows.
+KEYS = 4
+SUBTITLE_ROW, KEY_ROW = 0.2, 0.25
 
 
 def mixed(color, share):
@@ -159,7 +160,12 @@ class OutcomeSheet:
                 ]
                 following = len(chunks[k + 1]) if k + 1 < len(chunks) else 0
                 self.rows.append((title if k == 0 else None, chunk, names, following))
-        height = TOP + BOTTOM + sum(self.height_of(row) for row in self.rows)
+        words = self.subtitle().split(" ")
+        self.words = measure.filled(words, width - 0.3, size=HEAD_SIZE)
+        self.keys = self.key_handles()
+        lines = -(-len(self.keys) // KEYS)
+        self.top = HEAD + SUBTITLE_ROW * len(self.words) + KEY_ROW * lines + 0.25
+        height = self.top + BOTTOM + sum(self.height_of(row) for row in self.rows)
         self.sheet = Sheet(width, height)
 
     def height_of(self, row):
@@ -173,7 +179,7 @@ class OutcomeSheet:
     def draw(self):
         """Everything."""
         self.draw_header()
-        top = TOP
+        top = self.top
         for row in self.rows:
             title, chunk, names, following = row
             start = top
@@ -227,11 +233,9 @@ class OutcomeSheet:
             words = self.origin.get("vary") or "amplitude"
             axes.set_ylabel(words.replace("_", " "), fontsize=TICK_SIZE, labelpad=3)
 
-    def draw_header(self):
-        """Title, subtitle and the key."""
-        scene = self.origin.get("scene", {}).get("name", "the scene")
+    def subtitle(self):
+        """What cells and axes are, in words."""
         until, tolerated = self.origin.get("until"), self.origin.get("tolerated")
-        title = f"{shown(scene)}: outcome of a run, by method, step size and amplitude"
         length = f"each cell one run of {number(until)} s or 100 steps" if until else ""
         omega = self.origin.get("omega_max")
         across = "to the right h ω_max" + (f" (ω_max {number(omega)} rad/s)" if omega else "")
@@ -241,13 +245,19 @@ class OutcomeSheet:
         words = [length, across, up]
         if tolerated:
             words.append(f"bounded: energy within {100 * tolerated:.3g} %")
-        words = "; ".join(word for word in words if word)
-        self.sheet.head(0.15, (0.25, 14, title), (0.53, 9.5, words))
-        self.draw_key()
-        self.sheet.rule(TOP - 0.12)
+        return "; ".join(word for word in words if word)
 
-    def draw_key(self):
-        """The key of all colours and lines that appear."""
+    def draw_header(self):
+        """Title, subtitle and the key."""
+        scene = self.origin.get("scene", {}).get("name", "the scene")
+        title = f"{shown(scene)}: outcome of a run, by method, step size and amplitude"
+        lines = [(HEAD + SUBTITLE_ROW * k, HEAD_SIZE, line) for k, line in enumerate(self.words)]
+        self.sheet.head(0.15, (0.25, 14, title), *lines)
+        self.draw_key(HEAD + SUBTITLE_ROW * len(self.words) + 0.05)
+        self.sheet.rule(self.top - 0.12)
+
+    def key_handles(self):
+        """All colours and lines that appear, for the key."""
         there = {run.outcome for run in self.runs}
         ordered = [o for o in OUTCOMES if o in there] + sorted(there - set(OUTCOMES))
         keys = []
@@ -257,23 +267,26 @@ class OutcomeSheet:
             hatch = hatch if outcome == "over_budget" else {}
             keys.append(Patch(facecolor=color_of(outcome), label=words, **hatch))
         panels = [panel for _, own in self.sections for panel in own]
-        lines = []
-        if any(panel.is_unforeseen(run) for panel in panels for run in panel.runs):
-            words = "framed: energy grows though linear theory says stable"
-            lines.append(Patch(facecolor="none", edgecolor=INK, linewidth=1.3, label=words))
         if any(0 < panel.limit < math.inf for panel in panels):
-            lines.append(Line2D([], [], label="linear limit", **LIMIT))
+            keys.append(Line2D([], [], label="linear limit", **LIMIT))
+        if any(panel.is_unforeseen(run) for panel in panels for run in panel.runs):
+            words = "grows against linear theory"
+            keys.append(Patch(facecolor="none", edgecolor=INK, linewidth=1.3, label=words))
         if any(run.buckling_rate > 0 for run in self.runs):
-            words = "h × buckling rate = 1, at the start"
-            lines.append(Line2D([], [], label=words, **BUCKLING))
-        style = {"loc": "center left", "frameon": False, "fontsize": 9.5, "handlelength": 1.7}
-        style |= {"columnspacing": 1.4, "borderaxespad": 0, "borderpad": 0}
-        for top, handles in ((0.82, keys[:KEYS]), (1.09, keys[KEYS:] + lines)):
-            if handles:
-                place = (0.15 / self.sheet.width, 1 - top / self.sheet.height)
-                self.sheet.figure.legend(
-                    handles=handles, bbox_to_anchor=place, ncol=len(handles), **style
-                )
+            words = "h × buckling rate = 1 at the start"
+            keys.append(Line2D([], [], label=words, **BUCKLING))
+        return keys
+
+    def draw_key(self, top):
+        """The key, in rows."""
+        style = {"loc": "center left", "frameon": False, "fontsize": 9, "handlelength": 1.5}
+        style |= {"columnspacing": 1.2, "borderaxespad": 0, "borderpad": 0}
+        for k in range(0, len(self.keys), KEYS):
+            handles = self.keys[k : k + KEYS]
+            place = (0.15 / self.sheet.width, 1 - (top + k // KEYS * KEY_ROW) / self.sheet.height)
+            self.sheet.figure.legend(
+                handles=handles, bbox_to_anchor=place, ncol=len(handles), **style
+            )
 
 
 def ticks_between(low, high):

@@ -1,5 +1,6 @@
 """What became of runs over step size and amplitude: those of methods alike belong together."""
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -72,9 +73,13 @@ class Panel:
         return self.runs[0].knob == "step_size"
 
     @property
-    def fails_from(self):
-        """The first column with a run that fails; None where all hold."""
-        return min((run.column for run in self.runs if run.outcome not in HOLDS), default=None)
+    def holds_to(self):
+        """The last column up to which every run holds; None where one of the first column fails. The
+        next column has a run that fails, though later ones can hold again."""
+        failing = {run.column for run in self.runs if run.outcome not in HOLDS}
+        columns = sorted({run.column for run in self.runs})
+        held = itertools.takewhile(lambda column: column not in failing, columns)
+        return max(held, default=None)
 
     def is_unforeseen(self, run):
         """Whether its energy grew where linear theory says that it does not."""
@@ -82,17 +87,18 @@ class Panel:
 
     @property
     def note(self):
-        """The limit by theory, where there is one, and where runs fail, in words."""
-        failing = self.fails_from
-        if failing is None:
+        """The limit by theory, where there is one, and up to where all runs hold, in words."""
+        first, last = (f(run.column for run in self.runs) for f in (min, max))
+        if self.holds_to is None:
+            words = f"one fails at {number(10**first)}"
+        elif self.holds_to == last:
             unfinished = all(run.outcome == "over_budget" for run in self.runs)
-            failure = "not finished" if unfinished else "never fails"
+            words = "not finished" if unfinished else "all hold"
         else:
-            sign = "≤ " if failing == min(run.column for run in self.runs) else ""
-            failure = f"fails from {sign}{number(10**failing)}"
+            words = f"all hold to {number(10**self.holds_to)}"
         if not self.is_swept or not self.limit < math.inf:
-            return failure
-        return f"limit {number(self.limit) if self.limit else 0}, {failure}"
+            return words
+        return f"limit {number(self.limit) if self.limit else 0}, {words}"
 
 
 def panels_of(runs, limits):

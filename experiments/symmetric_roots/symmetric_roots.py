@@ -2,8 +2,8 @@
 
 Call: symmetric_roots.py DIR, the folder with roots.csv of the program symmetric_roots; writes
 DIR/symmetric_roots.png and DIR/symmetric_roots.svg. A dot is a formula, a colour its number of
-steps. The left panel shows the phase error over the limit of h w, the middle one the gap between
-roots over the same limit. The right one shows the energy error of an orbit over the gap. A line
+steps. The left panel shows the phase error over the limit of h w, the right one the gap between
+roots over the same limit. The one below shows the energy error of an orbit over the gap. A line
 is the best of all formulas with that limit or a larger one; in the left panel, of those with a
 large gap.
 """
@@ -17,10 +17,12 @@ from measurements import read_facts, read_table
 from sheet import Sheet, main
 from style import COOL, FAINT, GRID, INK, MARKERS, WARM, log_ticks, number
 
-LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.85, 1.6, 3.55, 4.2
-ACROSS, SIDE, BELOW = 0.85, 0.2, 0.75
-WIDTH = LEFT + 3 * PANEL_WIDTH + 2 * ACROSS + SIDE
-HEIGHT = TOP + PANEL_HEIGHT + BELOW
+# Two panels above, the third and the key below.
+LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.85, 1.1, 3.55, 4.0
+ACROSS, SIDE, DOWN, BELOW = 0.85, 0.2, 0.95, 0.75
+WIDTH = LEFT + 2 * PANEL_WIDTH + ACROSS + SIDE
+HEIGHT = TOP + 2 * PANEL_HEIGHT + DOWN + BELOW
+KEY_ROW, WORDS_ROW = 0.3, 0.2
 FONT_SIZE = 9.5
 COLORS = {4: COOL[0], 6: WARM[2], 8: COOL[1], 10: WARM[0], 12: WARM[3]}
 # How opaque dots are whose roots come near each other, and the others.
@@ -123,10 +125,22 @@ def name_methods(axes, formulas, across, up):
             )
 
 
-def draw_legend(sheet, formulas, top):
-    """A line of words: the colours, and the marks of the registry's formulas."""
-    left = SIDE
+def draw_key(sheet, formulas, at, apart):
+    """What dots and lines are, the colours, and the marks of the registry's formulas."""
+    left, top = LEFT + PANEL_WIDTH + ACROSS, TOP + PANEL_HEIGHT + DOWN + 0.1
+    words = (
+        "A dot is a formula, one force a step.",
+        f"Strong dots: no two roots come nearer than {number(apart)} rad up to hω = {at}.",
+        "Grey: they do.",
+        "Lines: the best at that limit or a larger one; upper left, of strong dots.",
+    )
     size = {"size": 10, "va": "center"}
+    for sentence in words:
+        for line in sheet.filled(sentence.split(" "), PANEL_WIDTH, size=10):
+            sheet.text(left, top, line, color=FAINT, **size)
+            top += WORDS_ROW
+        top += 0.06
+    top += 0.1
     for steps, color in COLORS.items():
         named = {f.method: f.marker for f in formulas if f.method and f.steps == steps}
         words = f"order {steps}" + "".join(f": {name}" for name in named)
@@ -137,14 +151,15 @@ def draw_legend(sheet, formulas, top):
         for marker in named.values():
             edge = {"markeredgecolor": INK, "markeredgewidth": 1.1}
             axes.plot(0, 0, marker, markersize=8.5, color=color, **edge)
-        text = sheet.text(left + 0.32, top, words, color=INK, **size)
-        left += 0.32 + sheet.text_width(text) + 0.35
+        sheet.text(left + 0.32, top, words, color=INK, **size)
+        top += KEY_ROW
 
 
 def new_axes(sheet, panel, title, across, up):
     """The axes of a panel with its words."""
-    left = LEFT + panel * (PANEL_WIDTH + ACROSS)
-    axes = sheet.axes(left, TOP, PANEL_WIDTH, PANEL_HEIGHT)
+    row, column = divmod(panel, 2)
+    left, top = LEFT + column * (PANEL_WIDTH + ACROSS), TOP + row * (PANEL_HEIGHT + DOWN)
+    axes = sheet.axes(left, top, PANEL_WIDTH, PANEL_HEIGHT)
     axes.grid(True, color=GRID)
     axes.tick_params(length=3, color=FAINT, labelsize=FONT_SIZE)
     axes.set_xlabel(across, fontsize=10)
@@ -207,14 +222,9 @@ def draw(folder):
     at, apart = number(origin["at"]), origin["well_apart"]
     sheet = Sheet(WIDTH, HEIGHT)
     title = "What the spurious roots of symmetric multistep formulas trade"
-    words = (
-        f"a dot is a formula, one force a step; strong dots: no two roots come nearer than "
-        f"{number(apart)} rad up to hω = {at}; lines: the best at that limit or a larger one, to "
-        "the left of strong dots"
-    )
-    sheet.head(SIDE, (0.3, 15, title), (0.6, 10, words))
-    draw_legend(sheet, formulas, 0.9)
-    sheet.rule(1.12)
+    sheet.head(SIDE, (0.3, 14, title))
+    sheet.rule(0.55)
+    draw_key(sheet, formulas, at, apart)
     draw_accuracy(sheet, formulas, at, apart)
     draw_distance(sheet, formulas, apart)
     draw_orbit(sheet, formulas, apart)

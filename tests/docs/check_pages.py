@@ -1,20 +1,25 @@
 """The pages of docs/ and README.md: what they say is measured, links lead somewhere, samples run."""
 
+import csv
 import json
-import math
 import re
 import subprocess
 import tempfile
 import tomllib
 import unittest
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from unittest import mock
 
 import chart_data
 import page_data
 import page_text
+import render
+import repeated
 import studies
 import study as entries
+import whole_runs
 from programs import BIN, rows_of, run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -88,8 +93,9 @@ class Runner(unittest.TestCase):
 
     def test_a_study_is_kept_where_it_ends_well_and_due_where_it_is_another(self):
         folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-        for name in ("DATA", "PICTURES", "RESULTS"):
+        for name in ("DATA", "PICTURES"):
             self.enterContext(mock.patch.object(entries, name, folder / name))
+        self.enterContext(mock.patch.object(entries, "MEASURED", str(folder / "MEASURED")))
         command = "simulate --scene examples/two_links.toml --explain"
         study = entries.Study("list", [command], text="m.csv")
         self.assertEqual("not measured", study.due())
@@ -105,6 +111,81 @@ class Runner(unittest.TestCase):
         bad = entries.Study("bad", ["convergence --scene nothing"], tables=["order.csv"])
         self.assertRaises(SystemExit, studies.make, bad, again=False)
         self.assertIsNone(bad.record)
+
+
+    def test_a_study_that_is_named_and_not_due_is_repeated_beside_its_data(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for name, place in (("DATA", Path), ("PICTURES", Path), ("MEASURED", str), ("REPEATED", str)):
+            self.enterContext(mock.patch.object(entries, name, place(folder / name)))
+        command = "exchange --scene fpu --until 1 --methods verlet --h-omega 0.5"
+        study = entries.Study("tiny", [command], tables=["summary.csv"])
+        self.enterContext(mock.patch.object(studies, "read_studies", lambda: {"tiny": study}))
+        self.assertIn("tiny: exchange", self.printed_by("tiny"))  # not measured yet, so it is kept
+        record = json.loads((study.data / "study.json").read_text())
+        entries.write_whole(study.data / "study.json", json.dumps({**record, "processor": "an abacus"}))
+        rows = repeated.read(study.data / "summary.csv")
+        row = next(row for row in rows if row["method"] == "verlet")
+        true = row["energy_error"]
+        row["energy_error"] = f"{float(true) / 2:.6g}"
+        text = StringIO()
+        csv.DictWriter(text, row).writerows([dict(zip(row, row)), *rows])
+        entries.write_whole(study.data / "summary.csv", text.getvalue())
+        before = {file: file.read_bytes() for file in (folder / "DATA").rglob("*.*")}
+
+        said = self.printed_by("tiny")
+        self.assertRegex(said, r"(?m)^then: an abacus, \d{4}-\d\d-\d\d")
+        self.assertIn(f"now:  {studies.processor()}", said)
+        numbers = rf"2\.0 +{re.escape(row['energy_error'])} +{re.escape(true)}"
+        self.assertRegex(said, rf"(?m)^ +{numbers}  energy_error of verlet")
+        self.assertNotIn("force_evaluations", said)  # is the same
+        self.assertEqual(before, {file: file.read_bytes() for file in (folder / "DATA").rglob("*.*")})
+        self.assertTrue((folder / "REPEATED/tiny/comparison.csv").exists())
+        # Without a name there is nothing to do, and --again measures for the pages.
+        self.assertEqual("", self.printed_by())
+        self.printed_by("tiny", "--again")
+        self.assertEqual(studies.processor(), study.record["processor"])
+
+    def printed_by(self, *words):
+        """What ./run studies prints with these words."""
+        with mock.patch("sys.argv", ["studies.py", *words]), redirect_stdout(StringIO()) as printed:
+            self.assertEqual(0, studies.main())
+        return printed.getvalue()
+
+
+class Repeated(unittest.TestCase):
+    """Tables of a study then and now."""
+
+    def test_rows_are_found_by_what_was_asked_for(self):
+        run = {"method": "dprkn8", "outcome": "reached_end", "rate": "1", "knob": "rtol", "time_s": "2"}
+        then = [{**run, "value": value} for value in ("0.1", "0.01")]
+        now = [{**row, "rate": "5", "time_s": "3"} for row in then[::-1]]
+        figures, gone, new = repeated.compared("summary.csv", then, now + [{**run, "value": "1e-3"}])
+        self.assertEqual((0, 1), (gone, new))
+        seen = {(one.column, one.key, one.ratio) for one in figures}
+        keys = [f"dprkn8 rtol {value}" for value in ("0.1", "0.01")]
+        self.assertEqual({(c, k, r) for k in keys for c, r in (("rate", 5), ("time_s", 1.5))}, seen)
+
+    def test_ratios_come_first(self):
+        then = [{"scene": "cloth", "time_s": "1", "margin": "2", "method": "verlet"}]
+        now = [{**then[0], "time_s": "3", "margin": "2.2"}]
+        figures, _, _ = repeated.compared("crossover.csv", then, now)
+        self.assertEqual(["margin", "time_s"], [one.column for one in figures])
+
+    def test_many_figures_are_summed_up_by_column(self):
+        then = [{"nodes": str(n), "seconds": "2", "verdict": "lives"} for n in range(1, 202)]
+        now = [{**row, "seconds": str(2 * int(row["nodes"]))} for row in then]
+        now[6]["verdict"] = "dies"
+        figures, _, _ = repeated.compared("modal.csv", then, now)
+        lines = [" ".join(line.split()) for line in repeated.figure_lines(figures)]
+        # The ratios are 1 to 201: the median is 101 and the quartiles 51 and 151, in two digits.
+        self.assertIn("100 51 150 200 of 201 seconds", lines)
+        self.assertIn("7: lives, now dies", lines)
+        self.assertEqual(4, len(lines))
+
+    def test_text_is_compared_by_line(self):
+        self.assertEqual(["  prints the same"], list(repeated.text_lines("a\nb\n", "a\nb\n")))
+        found = list(repeated.text_lines("a\nb\n", "a\nc\nd\n"))
+        self.assertEqual(["  then: b", "  now:  c", "  then: ", "  now:  d"], found)
 
 
 class Form(unittest.TestCase):
@@ -191,6 +272,25 @@ class Words(unittest.TestCase):
             self.assertEqual(words, page_data.figures(value))
         self.assertEqual(("1e-3", "97 %"), (page_data.accuracy(0.001), page_data.percent(0.974)))
 
+    def test_a_page_names_a_study_a_processor_and_a_date_once(self):
+        records = {
+            name: {"processor": processor, "date": date}
+            for name, processor, date in (
+                ("a", "abacus", "1"), ("b", "abacus", "1"), ("c", "abacus", "2"), ("d", "slide rule", "2"),
+            )
+        }  # fmt: skip
+        with mock.patch.object(page_data, "record", records.get), mock.patch.object(
+            page_data, "said_on_page", set()
+        ):
+            said = [page_data.made(*names) for names in ("a", "a", "ab", "c", "ad", "abcd")]
+        self.assertEqual(
+            ["(`./run studies a`; one core of an abacus, 1)", page_data.UNSAID, "(`./run studies b`)",
+             "(`./run studies c`; 2)", "(`./run studies d`; one core of an slide rule)", page_data.UNSAID],
+            said,
+        )  # fmt: skip
+        page = f"Forces {page_data.UNSAID}: one\n{page_data.UNSAID}.\n\n{page_data.UNSAID}\n\nEnd\n"
+        self.assertEqual("Forces: one.\n\nEnd\n", render.without_unsaid(page))
+
     def test_what_is_not_there_is_an_error(self):
         for call in (
             lambda: page_data.record("nothing"), lambda: page_data.rows("methods", "nothing.csv"),
@@ -209,25 +309,76 @@ class Words(unittest.TestCase):
         self.assertTrue(second.method != best.method and second.seconds >= best.seconds)
         self.assertFalse(chart_data.fastest("cloth", 1e-4, of=["explicit_euler"]))
 
-    def crossing_of(self, times):
-        """The crossing of kinds with these times by ratio, explicit and implicit; None: not reached."""
+
+class Leads(unittest.TestCase):
+    """Which kind of methods is the fastest at which measured stiffness ratio."""
+
+    def leads_of(self, times):
+        """The last ratio at which explicit methods lead and the first from which implicit ones do,
+        with these times of both by ratio; None: not reached."""
         cells = [
             {"stiffness_ratio": ratio, "kind": kind, "method": time and "m", "time_s": time or ""}
             for ratio, pair in times.items()
             for kind, time in zip(("explicit", "implicit"), pair)
         ]
         with mock.patch.object(chart_data, "rows", lambda *_, **__: cells):
-            return chart_data.crossing("made", 1e-3)
+            return (
+                chart_data.leads_to("made", 1e-3, "explicit"),
+                chart_data.leads_from("made", 1e-3, "implicit"),
+            )
 
-    def test_a_crossing_lies_where_both_take_as_long(self):
+    def test_the_lead_changes_between_two_measured_ratios(self):
         # Explicit time grows as the root of the ratio, implicit time stays: they meet at 900.
         times = {10.0**n: (10 ** (n / 2), 30) for n in range(7)}
-        self.assertAlmostEqual(900, self.crossing_of(times), places=6)
-        self.assertEqual(1, self.crossing_of({1: (2, 1), 10: (3, 1)}))
-        self.assertTrue(math.isnan(self.crossing_of({1: (1, 2), 10: (1, 2)})))
-        # Beyond a ratio that explicit methods do not reach, implicit ones are ahead; where neither
-        # does, nothing is known.
-        self.assertEqual(10, self.crossing_of({1: (1, 2), 10: (None, 2), 100: (None, None)}))
-        # An advantage that is lost again is none.
+        self.assertEqual((100, 1000), self.leads_of({**times, 1000: (40, 30)}))
+        # Nobody leads by less than a tenth, whatever the sign.
+        for near in (31, 29):
+            self.assertEqual((100, 10000), self.leads_of({**times, 1000: (near, 30)}))
+
+    def test_one_kind_can_lead_throughout(self):
+        self.assertEqual((None, 1), self.leads_of({1: (2, 1), 10: (3, 1)}))
+        self.assertEqual((10, None), self.leads_of({1: (1, 2), 10: (1, 2)}))
+
+    def test_a_ratio_that_no_kind_reaches_says_nothing(self):
+        times = {1: (1, 2), 10: (None, 2), 100: (None, None)}
+        self.assertEqual((1, 10), self.leads_of(times))
+
+    def test_a_lead_that_is_lost_again_is_none(self):
         lost = {1: (2, 1), 10: (2, 1), 100: (1, 2), 1000: (2, 1)}
-        self.assertAlmostEqual(math.sqrt(1e5), self.crossing_of(lost), 6)
+        self.assertEqual((None, 1000), self.leads_of(lost))
+
+
+class WholeRuns(unittest.TestCase):
+    """Up to which step size all runs of a method held."""
+
+    def endurance_of(self, outcomes):
+        """That of runs with h ω = 1, 2, ... which end so; their energy peaks at the same numbers."""
+        runs = [
+            {"h_omega": str(k), "outcome": outcome, "energy_max": str(k)}
+            for k, outcome in enumerate(outcomes, 1)
+        ]
+        return whole_runs.endurance(runs[::-1])
+
+    def test_a_single_failure_is_no_limit_from_which_on_runs_fail(self):
+        found = self.endurance_of(["bounded", "gained", "bounded", "leaked", "bounded"])
+        self.assertEqual((1, 2, 4, 1), (found.held_to, found.failed_from, found.longer, found.failed))
+        self.assertEqual("1.0; 1 of 4", whole_runs.endurance_words(found))
+
+    def test_a_longer_step_that_holds_is_not_counted_as_failed(self):
+        found = self.endurance_of(["bounded", "leaked", "newton_failed", "gained", "bounded", "diverged"])
+        self.assertEqual((2, 3, 4, 3), (found.held_to, found.failed_from, found.longer, found.failed))
+        self.assertEqual((2, 4), (found.grown, found.least_growth))
+
+    def test_all_can_hold_or_fail(self):
+        for outcomes, words in ((["bounded", "leaked"], "2.0; none"), (["gained"] * 3, "–; 3 of 3")):
+            self.assertEqual(words, whole_runs.endurance_words(self.endurance_of(outcomes)))
+        self.assertRaises(page_data.BadPage, whole_runs.endurance, [])
+
+    def test_amplitudes_count_together(self):
+        """A step holds where the runs of all amplitudes do."""
+        runs = [
+            {"h_omega": h, "amplitude": amplitude, "outcome": outcome, "energy_max": "9"}
+            for amplitude, outcomes in (("1", ("bounded", "bounded")), ("2", ("bounded", "gained")))
+            for h, outcome in zip("12", outcomes)
+        ]
+        self.assertEqual("1.0; 1 of 2", whole_runs.endurance_words(whole_runs.endurance(runs)))

@@ -9,10 +9,12 @@ from pathlib import Path
 
 import band
 import causes
+import damping_panels
 import emphasis
 import failures
 import labels
 import names
+import outcomes
 import prominent
 import record
 import style
@@ -166,14 +168,49 @@ class Prominent(unittest.TestCase):
         self.assertEqual(self.strong([a_run(outcome="diverged")]), [])
 
 
+class Endurance(unittest.TestCase):
+    """Up to which step size all runs of a map hold, in words."""
+
+    def note_of(self, rows, limit=math.inf):
+        """The words of a panel with runs at h w = 1, 10, ..., a row an amplitude."""
+        runs = [
+            outcomes.Run("m", "step_size", 1, 1, 10.0**i, amplitude, outcome, 0, 1, 0)
+            for amplitude, row in enumerate(rows)
+            for i, outcome in enumerate(row)
+        ]
+        return outcomes.Panel(["m"], limit, runs).note
+
+    def test_a_run_that_fails_ends_it_though_longer_steps_hold_again(self):
+        self.assertEqual(self.note_of([["bounded", "gained", "bounded"]]), "all hold to 1")
+        rows = [["bounded"] * 3, ["bounded", "leaked", "newton_failed"]]
+        self.assertEqual(self.note_of(rows, limit=2), "limit 2, all hold to 10")
+
+    def test_all_or_none(self):
+        self.assertEqual(self.note_of([["leaked"] * 3]), "all hold")
+        self.assertEqual(self.note_of([["diverged"] * 3], limit=0), "limit 0, one fails at 1")
+        self.assertEqual(self.note_of([["over_budget"] * 3]), "not finished")
+
+
+class Damping(unittest.TestCase):
+    """The line of a method over the modes of a scene."""
+
+    def test_it_leaves_out_a_mode_without_a_prediction(self):
+        curve = damping_panels.Curve(["m"], [(0.5, 0.1), (1.0, math.nan)], [(1, 1)], None)
+        rows = [
+            {"h_omega": x, "damping_ratio_predicted": y} for x, y in ((0.5, 0.1), (1.0, math.nan))
+        ]
+        sheet = damping_panels.DampingSheet.__new__(damping_panels.DampingSheet)
+        self.assertEqual(sheet.predicted(curve, rows, 1 / (2 * math.pi)), [(0.5, 0.1)])
+
+
 class Causes(unittest.TestCase):
     """The strip of failures, by cause."""
 
-    def sweep(self, method, outcomes, knob="step_size"):
+    def sweep(self, method, ends, knob="step_size"):
         """The runs of a method at 1e-4, 1e-3, ...; None reached its end."""
         return [
             a_run(method, 10.0 ** (i - 4), knob=knob, outcome=outcome or "reached_end")
-            for i, outcome in enumerate(outcomes)
+            for i, outcome in enumerate(ends)
         ]
 
     def lines(self, *sweeps):

@@ -2,6 +2,7 @@
 empty and names the methods. The same numbers must give the same picture. The programs are in the
 folder QDDOT_BIN."""
 
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -23,10 +24,24 @@ PICTURES = {
     "bench": (("bench",), None),
 }  # fmt: skip
 
+# The width in pixels of a page's column, and the size of text that can still be read in it.
+PAGE, READABLE = 830, 10
+# The studies whose pictures are wider, and are to be opened at their full size.
+WIDE = ("advice", "bench", "exchange", "local_global")
+
 
 def ink(path):
     """The share of the picture's pixels that are not white."""
     return (image.imread(path)[..., :3].min(axis=-1) < 0.9).mean()
+
+
+def least_text(path):
+    """The size in pixels of the smallest text of an SVG where the page shows it 830 pixels wide.
+    Exponents, which matplotlib draws at 0.7 of their base, count as their base."""
+    content = path.read_text(encoding="utf-8")
+    width = float(re.search(r'width="([\d.]+)pt"', content)[1])
+    sizes = {float(size) for size in re.findall(r"font: (?:\w+ )*([\d.]+)px", content)}
+    return min(size for size in sizes if size / 0.7 not in sizes) * PAGE / width
 
 
 class Pictures(unittest.TestCase):
@@ -46,6 +61,8 @@ class Pictures(unittest.TestCase):
         for file in files[::2]:
             # Text and lines on white, or maps that fill their panels. An empty sheet has neither.
             self.assertTrue(0.01 < ink(file) < 0.8, f"{file.name}: {ink(file)}")
+        for file in [] if study in WIDE else files[1::2]:
+            self.assertGreater(least_text(file), READABLE, file.name)
         if table:
             methods = {row["method"] for row in read_table(results / table)}
             self.assertTrue(methods)
