@@ -50,7 +50,7 @@ class Shown(unittest.TestCase):
         axes = sheet.figure.axes
         for one in axes:
             # Outlines beside each other share the numbers of the first.
-            shown = [one.xaxis, *([one.yaxis] if one.yaxis.get_tick_params()["labelleft"] else [])]
+            shown = [one.xaxis, *([one.yaxis] if one.get_ylabel() else [])]
             for axis in shown:
                 self.assertGreater(len([t for t in axis.get_ticklabels() if t.get_text()]), 1)
         return Page(self.folder / "motion.html"), axes
