@@ -221,6 +221,7 @@ class Moving(Page):
         self.assertGreater(sum(self.browser.driver.execute_async_script(INKS)), 1000)
         # The address keeps it all.
         fragment = self.browser.value("location.hash")
+        self.doCleanups()
         self.load(self.made, fragment)
         self.assertEqual(self.browser.value("qddotReport.state.compared"), kept[:2])
         self.browser.wait("document.querySelectorAll('.view').length === 1")
@@ -233,9 +234,9 @@ class Moving(Page):
         charts = self.browser.value(f"{drawn}.map(data => data.map(({{ x, y }}) => [x, y]))")
         run = self.browser.value("qddotReport.keptMotion(qddotReport.state.run)")
         self.assertEqual(len(charts), 2)
-        for along, (reference, own) in enumerate(charts):
+        for along, (_, own) in enumerate(charts):
             self.assertEqual(own, [run["phase"][name][along] for name in ("position", "velocity")])
-            self.assertNotEqual(reference, own)
+        self.assertNotEqual(*charts[1])  # along x nothing moves
         self.doCleanups()
         self.show()
         self.assertFalse(self.browser.find("#phase").is_displayed())
