@@ -6,6 +6,7 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.util.osutil import relative_uri
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -34,6 +35,7 @@ highlight_language = "text"
 nitpick_ignore_regex = [
     ("cpp:identifier", r"(std|Eigen)(::.*)?"),
     ("cpp:identifier", r"qddot(::measure)?"),
+    ("cpp:identifier", r"Chart"),  # the record that pictures are drawn from
     ("cpp:identifier", r"reduce(::Part)?"),
 ]
 
@@ -41,7 +43,8 @@ html_theme = "furo"
 pygments_style = "default"
 pygments_dark_style = "monokai"
 html_title = f"qddot {version}"
-html_static_path = []
+html_static_path = ["site/static"]
+html_css_files = ["narrow.css"]
 html_show_sourcelink = False
 html_copy_source = False
 
@@ -74,6 +77,15 @@ def link_files(app, doctree):
             link.replace_self(nodes.reference("", "", *text, refuri=place))
 
 
+def open_pictures(app, doctree, docname):
+    """Makes the links around pictures lead to the site's own copies of them."""
+    for picture in doctree.findall(nodes.image):
+        if isinstance(picture.parent, nodes.reference):
+            _, name = app.env.images[picture["uri"]]
+            target = f"{app.builder.imagedir}/{name}"
+            picture.parent["refuri"] = relative_uri(app.builder.get_target_uri(docname), target)
+
+
 def name_left_out(app, env, link, text):
     """Shows the name of a derived class that cpp_reference.md does not have, without a link."""
     if link["reftype"] == "ref" and link["reftarget"].startswith("classqddot_"):
@@ -85,4 +97,5 @@ def setup(app):
     """Called by Sphinx."""
     app.add_config_value("source_url", "", "env")
     app.connect("doctree-read", link_files, priority=100)  # before files are copied as downloads
+    app.connect("doctree-resolved", open_pictures)
     app.connect("missing-reference", name_left_out)

@@ -54,6 +54,8 @@ def filtered(lines):
 
 def main():
     source = Path(sys.argv[1]).read_text(encoding="utf-8")
+    # Doxygen loses the names before an inline namespace.
+    source = source.replace("namespace qddot::inline ", "namespace qddot::")
     print("\n".join(filtered(source.splitlines())))
 
 

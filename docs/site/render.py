@@ -63,11 +63,12 @@ def rendered():
     for method in method_pages.all_methods():
         wanted.append((f"methods/{method.name}.md", "method.md", {"method": method}))
     pages = {}
-    for page, template, values in wanted:
+    for name, template, values in wanted:
         page_data.said_on_page.clear()
         notice = NOTICE.format(source=f"docs/pages/{template}")
-        file = ROOT / ("" if page == "README.md" else "docs") / page
-        pages[file] = notice + without_unsaid(jinja.get_template(template).render(**values))
+        file = ROOT / ("" if name == "README.md" else "docs") / name
+        page = without_unsaid(jinja.get_template(template).render(**values))
+        pages[file] = notice + with_opened_pictures(page)
     return pages
 
 
@@ -75,6 +76,11 @@ def without_unsaid(page):
     """A page without the places where `made` had nothing to say, and the spaces or lines before."""
     page = re.sub(rf"^{page_data.UNSAID}\n+", "", page, flags=re.MULTILINE)
     return re.sub(rf"\s?{page_data.UNSAID}", "", page)
+
+
+def with_opened_pictures(page):
+    """A page whose pictures are links to their full size, for screens that show them smaller."""
+    return re.sub(r"^(!\[[^\]]*\]\(([^)\s]+)\))$", r"[\1](\2)", page, flags=re.MULTILINE)
 
 
 class NotMeasured(jinja2.ChainableUndefined):

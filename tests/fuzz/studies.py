@@ -37,7 +37,7 @@ COMMANDS = {name: f"{words} --out results" for name, words in STUDIES.items()} |
     "simulate": "--scene steady.toml --method verlet --step-size 1e-4 --until 0.02"
     " --final results/final.csv --trajectory results/trajectory.csv --energy results/energy.csv"
     " --motion results/motion.vtkhdf --every 1e-4 --write-scene results/scene.toml",
-    "equilibrium": "--scene steady.toml --final results/rest.csv",
+    "equilibrium": "--scene steady.toml --final results/rest.csv --out results",
     "advise": "--scene steady.toml --accuracy 1e-3 --out results",
 }
 

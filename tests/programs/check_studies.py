@@ -182,6 +182,14 @@ class Rest(Programs):
             if drawn == "pendulum":  # sideways m g / l
                 self.near(origin["smallest_eigenvalue"], 9.81 / (1 + 9.81 / 1000), 1e-12)
 
+    def test_a_shape_is_the_nodes_as_drawn_and_how_far_they_move(self):
+        self.done("equilibrium --scene pendulum --out out")
+        (_, bob), (spring,) = table("out/shape.csv"), table("out/springs.csv")
+        self.near(bob["z"] + bob["dz"], -1 - 9.81 / 1000, 1e-12)
+        self.near(bob["x"] + bob["dx"], 0, 1e-9)
+        self.assertEqual((spring["i"], spring["j"]), (0, 1))
+        self.assertEqual(sidecar("out/shape.json")["outcome"], "reached")
+
     def test_scenes_that_are_loose_or_never_rest(self):
         # Six motions of a free body in space, less the turn of two points about their line.
         free = self.done("equilibrium --scene pair").stdout

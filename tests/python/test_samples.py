@@ -10,6 +10,7 @@ import sys
 import warnings
 from pathlib import Path
 
+import numpy as np
 import qddot
 from programs import Programs, table
 
@@ -47,6 +48,25 @@ class Samples(Programs):
         self.assertEqual(names["sol"].q.shape, (61, 30, 3))
         self.assertLess(names["sure"].error_estimate, 1e-4)
         self.assertLess(names["chart"].best(1e-4).error_position, 1e-4)
+
+    def test_lecture(self):
+        names, _ = self.run_all(blocks_of("docs/lecture.md"))
+        # Differences of a step d leave d^2 and rounding over d.
+        self.assertLess(abs(names["stiffness"](names["q"]) - names["columns"]).max(), 1e-7)
+        self.assertLess(abs(names["force"](names["q"]).ravel() + names["slope"]).max(), 1e-7)
+        action, e = names["action"], names["e"]
+        # The second derivative is the integral of m b'^2 - m w^2 b^2 over the change b.
+        second = np.pi**2 / (2 * names["until"]) - 100 * names["until"] / 2
+        self.assertLess(abs(action(e) - action(-e)) / (2 * e), 1e-5)  # sums in steps of 1e-4 s
+        bent = (action(e) - 2 * action(0) + action(-e)) / e**2
+        self.assertLess(abs(bent - second), 1e-4 * abs(second))
+        end = names["end"]
+        exact = [end.q[1, 0], end.v[1, 0]]
+        self.assertLess(abs(names["flow"] @ [1.0, 0.0] - exact).max(), 1e-12)
+        self.assertEqual(names["bent"].outcome, "reached")
+        sunk = (names["beam"].positions - names["bent"].positions)[:, 2]
+        self.assertGreater(sunk.max(), 0.01)  # the free end, by more than a line's width
+        self.assertGreater(os.path.getsize("bent.png"), 5000)
 
     def test_notebook(self):
         path = ROOT / "examples/notebook/first_steps.ipynb"
