@@ -102,8 +102,8 @@ struct Summary {
   double energy_growth = 1;
   // The number of the failed step, 1, 2, ..., in the part that failed; 0 if the end was reached.
   std::int64_t failed_step = 0;
-  // The energy [J] that was lost by the end of the run, and that part of the energy which its motion
-  // can turn into speed (EnergyChange); zero if none was lost.
+  // The energy [J] that was lost by the end of the run, and that part of the energy which its
+  // motion can turn into speed (EnergyChange); zero if none was lost.
   double energy_lost = 0, energy_loss = 0;
 };
 
