@@ -10,10 +10,9 @@ namespace qddot {
 // and each mode y = U'z, with y(0) = 0, is
 //   y(t) = y'(0) sin(wt)/w + b (1 - cos wt)/w^2,
 // or y'(0) t + b t^2/2 if w = 0. Where V falls along a mode, w^2 = -s^2 is negative and
-//   y(t) = y'(0) sinh(st)/s + b (cosh st - 1)/s^2. There is no step and no step error, only the
-//   rounding of the dense
-// eigenproblem. That takes O(n^3) time once and n^2 memory; a motion is O(n^2). The system must
-// outlive it.
+//   y(t) = y'(0) sinh(st)/s + b (cosh st - 1)/s^2.
+// There is no step and no step error, only the rounding of the dense eigenproblem. That takes
+// O(n^3) time once and n^2 memory; a motion is O(n^2). The system must outlive it.
 class LinearMotion {
  public:
   // Throws std::invalid_argument unless K is constant and every mass is positive.
