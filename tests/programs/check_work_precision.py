@@ -410,7 +410,7 @@ class Motions(Programs):
         before = read("motions.csv"), sorted(os.listdir("motions"))
         # So soon that no run is made, and whether the program has begun with them or not.
         for limit in ("1e-4", "0.05"):
-            ended = run(f"motions --scene pendulum --out . --frames 1000 --time-limit {limit}")
+            ended = run(f"motions --scene pendulum --out . --frames 10000 --time-limit {limit}")
             self.assertEqual(ended.returncode, 3)
             self.assertEqual((read("motions.csv"), sorted(os.listdir("motions"))), before)
 
