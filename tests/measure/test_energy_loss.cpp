@@ -21,7 +21,7 @@ struct Told {
 Told told(const std::string& scene, const char* name, const Options& options, double until) {
   Simulation run(load_scene(scene), method(name), options);
   const Summary summary = run.advance(until);
-  return {summary, loss_warning(method(name), run.options(), run.model(), summary, until, 10)};
+  return {summary, loss_warning(method(name), run.options(), run.model(), summary, until, 1000)};
 }
 
 double number_after(const std::string& words, const std::string& text) {
