@@ -1,6 +1,8 @@
 """The picture of a motion by several methods: how it moves, its energy and, of one mass, its phase
 plane."""
 
+import math
+
 import numpy as np
 from matplotlib import ticker
 from matplotlib.collections import LineCollection
@@ -13,11 +15,11 @@ from sheet import Sheet
 from style import FAINT
 
 AXES = "xyz"
-LEFT, TOP, SIDE, GAP = 0.8, 1.0, 3.7, 0.95  # in inches
+LEFT, TOP, SIDE, GAP = 0.8, 1.0, 3.7, 1.25  # in inches
 # A run that blows up would leave the others no room: axes reach little farther than the first run.
 FARTHEST = 1.5
 # Outlines: how many times, the side of a panel in inches, and how many springs of a large scene.
-TIMES, PANEL, FEW_SPRINGS, MOST_SPRINGS = 4, 2.3, 100, 6000
+TIMES, PANEL, MOST_SPRINGS = 4, 2.3, 6000
 # The energy of a run may change by so many times the largest kinetic energy before it leaves the axes.
 FARTHEST_ENERGY = 3
 # The direction from which scenes in space are looked at, where z is upwards.
@@ -157,7 +159,7 @@ def draw_outlines(drawn, runs):
             frame, first = frame_at(run, time), frame_at(runs[0], time)
             lines = {EXACT_LOOK.color: outline(drawn, runs[0], first, seen)} if row else {}
             lines[run.look.color if row else FAINT] = outline(drawn, run, frame, seen)
-            thin = 1.2 if len(run.motion.springs) < FEW_SPRINGS else 0.6
+            thin = min(1.2, 12 / math.sqrt(len(run.motion.springs) or 1))
             for (color, segments), width in zip(lines.items(), (3 * thin, thin) if row else (thin,)):
                 axes.add_collection(LineCollection(segments, colors=color, linewidths=width))
             is_over = run.failed and run.times[-1] < time * (1 - 1e-9)
