@@ -17,7 +17,7 @@ from motion_files import MotionFile, open_motion
 from style import Look, assign_looks
 
 SIMULATE = Path(__file__).absolute().parents[2] / "build/bin/simulate"
-# What is called exact is a run whose error at the end is at most so large.
+# A run is called exact if its error at the end is at most this.
 ACCURACY = "1e-8"
 LONGEST_SEARCH = "60"  # [s]
 # A curve of the exact motion has so many points for each of the others.

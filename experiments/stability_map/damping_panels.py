@@ -15,7 +15,7 @@ from style import short_names
 
 WIDTH = 8.9
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT = 0.8, 1.45, 7.0, 3.65
-# What stands below a panel, with its axis' words, and the heading of the next part.
+# Inches below a panel for its axis' words, and for the heading of the next part.
 FOOT, HEADING = 0.6, 0.55
 TABLE, TABLE_END, LINE, GAP = 0.25, 8.65, 0.18, 0.06
 LIMIT_AT, DIFFERENCE_AT = 7.5, TABLE_END

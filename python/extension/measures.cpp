@@ -18,8 +18,8 @@ namespace qddot::python {
 namespace {
 using py::arg;
 
-// What is made outside Python in about so many seconds. If that is too little, the sentence names
-// Python's argument of them.
+// Makes something outside Python in about so many seconds. If that is too little, the sentence
+// names Python's argument of them.
 template <class Make>
 auto made_in(double seconds, const std::string& argument, const Make& make) {
   try {

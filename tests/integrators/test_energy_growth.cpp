@@ -208,14 +208,14 @@ BOOST_AUTO_TEST_CASE(a_loss_is_what_the_last_energy_says) {
              boost::test_tools::tolerance(1e-9));
   BOOST_TEST(damped.summary.energy_lost == damped.summary.energy_loss / 2,
              boost::test_tools::tolerance(1e-9));
-  // What falls turns its energy into speed and loses none.
+  // A fall turns energy into speed and loses none.
   for (const Method& method : general_methods()) {
     if (method.name == "explicit_euler" || method.order == 1) continue;
     BOOST_TEST(
         run(method, falling(), 0.3, options_of(method, 0.001, 1e-6)).summary.energy_loss < 0.01,
         method.name);
   }
-  // Of parts, what each lost is compared with what all have: here 1/2 J and 1/2 J.
+  // The losses of parts are compared with the energies of all: here 1/2 J and 1/2 J.
   const auto both = in_parts(pushed(1e-3).network, pushed(10).network);
   const Run r = run(method_named("implicit_euler"), both, {0, Vec{{0, 0}}, Vec{{1, 1}}}, 1,
                     {.step_size = 0.01});

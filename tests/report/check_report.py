@@ -204,7 +204,7 @@ class Motions(Folder):
             self.assertEqual(self.page().data["motion"]["up"], up, gravity)
 
     def test_one_mass_has_a_phase_plane(self):
-        # Of two nodes the first stays.
+        # The first of two nodes stays.
         for dimension in (1, 2):
             motion = self.make(side=2, dimension=dimension, runs=2).data["motion"]
             for run, row in zip(motion["runs"], self.rows("motions.csv")):

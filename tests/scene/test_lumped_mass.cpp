@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(vertices_that_are_left_out_have_no_share) {
       scene_of("a.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 9 9 9\nv 0 1 0\nf 2 3 5\n", "density = 6\n");
   BOOST_TEST(scene.nodes.size() == 3u);
   for (const Node& node : scene.nodes) BOOST_TEST(node.mass == 1);
-  // Where vertices are welded, both triangles' shares are one node's.
+  // The shares of both triangles are one node's if vertices are welded.
   const Scene welded =
       scene_of("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n",
                "density = 6\nweld = 0\n");

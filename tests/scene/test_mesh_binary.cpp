@@ -71,7 +71,7 @@ std::string old_binary(endian order) {
   out.put<std::int32_t>(2, 2, 2, 1, 7, 1, 40, 2, 3, 2, 7, 1, 7, 40, 8);
   out.put<std::int32_t>(16, 1, 2, 3, 0, 1, 7, 40, 3, 8, 2, 2, 2, 2);
   out.put<std::int32_t>(15, 1, 0, 4, 7);
-  // What follows is left out in ASCII, too.
+  // The rest is left out in ASCII, too.
   return out.text("\n$EndElements\n$NodeData\n").put<double>(1, 2).text("\n$EndNodeData\n").str();
 }
 

@@ -31,7 +31,7 @@ class Cells {
     const std::size_t first = e == 0 ? 0 : ends_[e - 1];
     return std::span(corners_).subspan(first, ends_[e] - first);
   }
-  // Of all elements; 0 if there is none.
+  // The largest dimension of an element; 0 if there is none.
   int highest_dimension() const {
     return dimensions_.empty() ? 0 : *std::ranges::max_element(dimensions_);
   }
