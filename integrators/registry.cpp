@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "qddot/integrators/parts.hpp"
+#include "qddot/integrators/integrator.hpp"
 
 // One line a method; each is defined in the file of its name or of its family.
 #define QDDOT_METHODS(METHOD)      \
@@ -84,20 +84,6 @@ const std::vector<Method>& methods() {
   return all;
 }
 
-namespace {
-
-// Replaces the integrator of a method that cannot step. Without unknowns, advance() lets time pass.
-// If the method does not fit the system, advance() refuses.
-class Rest final : public Integrator {
- public:
-  using Integrator::Integrator;
-
- private:
-  Outcome run_to(State&, double) override { return Outcome::reached_end; }
-};
-
-}  // namespace
-
 const Method* find_method(std::string_view name) {
   const auto found = std::ranges::find(methods(), name, &Method::name);
   return found == methods().end() ? nullptr : &*found;
@@ -106,11 +92,7 @@ const Method* find_method(std::string_view name) {
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Options& options) {
   check_options(method, options);
-  if (system.size() == 0 || !applies_to(method, system)) {
-    return std::make_unique<Rest>(method, system, options);
-  }
-  if (!blocks_of(system).empty()) return std::make_unique<Parts>(method, system, options);
-  return method.make(method, system, options);
+  return std::make_unique<Integrator>(method, system, options);
 }
 
 }  // namespace qddot

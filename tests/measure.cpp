@@ -44,11 +44,11 @@ bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b) {
 }
 
 bool is_valid_at(const System& system, const Vec& q) {
-  const auto* validity = capability<Validity>(system);
+  const auto* validity = system.validity();
   return !validity || validity->is_valid_at(q);
 }
 bool is_linear_at(const System& system, const Vec& q) {
-  const auto* pieces = capability<PiecewiseLinear>(system);
+  const auto* pieces = system.pieces();
   return pieces ? pieces->is_linear_at(q) : system.stiffness_is_constant();
 }
 
@@ -64,12 +64,12 @@ SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
 }
 SymmetricMatrix material_stiffness_at(const System& system, const Vec& q) {
   SymmetricMatrix k = system.stiffness_pattern();
-  offered<SplitStiffness>(system).material_stiffness(q, k);
+  offered(system.split_stiffness()).material_stiffness(q, k);
   return k;
 }
 Vec mean_force_between(const System& system, const Vec& a, const Vec& b) {
   Vec f(system.size());
-  offered<DiscreteGradient>(system).discrete_gradient(a, b, f);
+  offered(system.discrete_gradient()).mean_force(a, b, f);
   return f;
 }
 

@@ -34,10 +34,9 @@ Eigen::MatrixXd dense(const SymmetricMatrix& lower);
 // Whether two matrices have entries at the same places, stored alike.
 bool same_pattern(const SymmetricMatrix& a, const SymmetricMatrix& b);
 
-// A capability that a test needs; throws where the system does not offer it.
+// A capability that a test needs; throws if the system lacks it.
 template <class C>
-const C& offered(const System& system) {
-  const C* found = capability<C>(system);
+const C& offered(const C* found) {
   if (!found) throw std::invalid_argument("the system does not offer what the test needs");
   return *found;
 }

@@ -35,24 +35,24 @@ class Chain final : public qddot::System {
     pattern_.setFromTriplets(entries.begin(), entries.end());
   }
 
-  double potential(const ConstVec& q) const override {
+  double potential(const At& at) const override {
     double sum = 0;
-    for (Index i = 0; i + 1 < atoms_; ++i) sum += Bond(across(q, i).norm()).energy;
+    for (Index i = 0; i + 1 < atoms_; ++i) sum += Bond(across(at.q, i).norm()).energy;
     return sum;
   }
-  void force(const ConstVec& q, MutableVec f) const override {
+  void force(const At& at, MutableVec f) const override {
     f.setZero();
     for (Index i = 0; i + 1 < atoms_; ++i) {
-      const Vector2d d = across(q, i), pull = Bond(d.norm()).first * d.normalized();
+      const Vector2d d = across(at.q, i), pull = Bond(d.norm()).first * d.normalized();
       f.segment<2>(2 * i) += pull;
       f.segment<2>(2 * i + 2) -= pull;
     }
   }
   const qddot::SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec& q, qddot::SymmetricMatrix& k) const override {
+  void stiffness(const At& at, qddot::SymmetricMatrix& k) const override {
     k.coeffs().setZero();
     for (Index i = 0; i + 1 < atoms_; ++i) {
-      const Vector2d d = across(q, i), n = d.normalized();
+      const Vector2d d = across(at.q, i), n = d.normalized();
       const Bond bond(d.norm());
       const Matrix2d along = n * n.transpose(), all = Matrix2d::Identity();
       const Matrix2d b = bond.second * along + bond.first / d.norm() * (all - along);

@@ -8,11 +8,11 @@
 class Duffing final : public qddot::System {
  public:
   explicit Duffing(qddot::Index n) : System(qddot::Vec::Ones(n)) {}  // the masses [kg]
-  double potential(const qddot::ConstVec& q) const override {
-    return q.squaredNorm() / 2 + q.array().pow(4).sum() / 4;
+  double potential(const qddot::At& at) const override {
+    return at.q.squaredNorm() / 2 + at.q.array().pow(4).sum() / 4;
   }
-  void force(const qddot::ConstVec& q, qddot::MutableVec f) const override {
-    f = -q - q.array().cube().matrix();
+  void force(const qddot::At& at, qddot::MutableVec f) const override {
+    f = -at.q - at.q.array().cube().matrix();
   }
 };
 

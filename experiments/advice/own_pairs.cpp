@@ -15,15 +15,15 @@ class Pairs : public System {
 
   bool has_potential() const override { return computes_energy_; }
 
-  double potential(const ConstVec& q) const override {
+  double potential(const At& at) const override {
     double sum = 0;
-    for (const OwnPair& pair : pairs_) sum += pair.law.at(between(pair, q).norm()).energy;
+    for (const OwnPair& pair : pairs_) sum += pair.law.at(between(pair, at.q).norm()).energy;
     return sum;
   }
-  void force(const ConstVec& q, MutableVec f) const override {
+  void force(const At& at, MutableVec f) const override {
     f.setZero();
     for (const OwnPair& pair : pairs_) {
-      const Vec d = between(pair, q);
+      const Vec d = between(pair, at.q);
       const Vec pull = d * (pair.law.at(d.norm()).tension / d.norm());
       f.segment(first(pair.one), dimension_) += pull;
       if (pair.other) f.segment(first(*pair.other), dimension_) -= pull;
@@ -53,10 +53,10 @@ class StiffPairs final : public Pairs {
     pattern_.coeffs().setZero();
   }
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
+  void stiffness(const At& at, SymmetricMatrix& k) const override {
     Eigen::MatrixXd full = Eigen::MatrixXd::Zero(size(), size());
     for (const OwnPair& pair : pairs_) {
-      const Vec d = between(pair, q);
+      const Vec d = between(pair, at.q);
       const double r = d.norm();
       const auto law = pair.law.at(r);
       const Eigen::MatrixXd nn = d * d.transpose() / (r * r);

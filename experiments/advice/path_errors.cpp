@@ -76,9 +76,9 @@ std::vector<double> errors_at_steps(const Method& method, double value,
                                     const JudgedMotion& motion) {
   const System& system = motion.model().system();
   std::vector<double> errors(motion.truth().times.size());
-  if (blocks_of(system).empty()) raise(errors, method, value, motion, system, 0);
+  if (system.blocks().empty()) raise(errors, method, value, motion, system, 0);
   Index first = 0;
-  for (const auto& block : blocks_of(system)) {
+  for (const auto& block : system.blocks()) {
     raise(errors, method, value, motion, *block, first);
     first += block->size();
   }

@@ -14,9 +14,9 @@ class WithPlainForce final : public System {
   WithPlainForce(const System& system, const PlainForce& plain)
       : System(system.mass()), system_(system), plain_(plain) {}
 
-  void force(const ConstVec& q, MutableVec f) const override { plain_.force(q.data(), f.data()); }
-  double potential(const ConstVec& q) const override { return system_.potential(q); }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override { system_.stiffness(q, k); }
+  void force(const At& at, MutableVec f) const override { plain_.force(at.q.data(), f.data()); }
+  double potential(const At& at) const override { return system_.potential(at); }
+  void stiffness(const At& at, SymmetricMatrix& k) const override { system_.stiffness(at, k); }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
 

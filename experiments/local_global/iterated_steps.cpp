@@ -7,7 +7,7 @@
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/integrators/base/compression.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -18,12 +18,11 @@ namespace {
 constexpr int most_halvings = 30;
 
 template <bool is_clamped>
-class Newton final : public FixedStep {
+class Newton final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const auto move_to = [&](const Vec& v) {
       next.v = v;
       next.q = now.q + h * v;
@@ -55,9 +54,10 @@ class Newton final : public FixedStep {
     return Outcome::reached_end;
   }
 
+ private:
   bool factorize(const Vec& q, double s) {
     const auto works = [&](double kept) {
-      weighted_stiffness(q, kept, k_);
+      run_.counted().weighted_stiffness(q, kept, k_);
       ++counts().factorizations;
       return matrix_.factorize_positive(1, s, k_);
     };

@@ -16,20 +16,18 @@ class Bdf2 final : public ImplicitStep {
  public:
   using ImplicitStep::ImplicitStep;
 
- private:
-  void start(const State& state) override {
-    ImplicitStep::start(state);
+  void begin(const State& state, State& x) {
+    ImplicitStep::begin(state, x);
     last_h_ = 0;
   }
 
-  void resume(const FixedStep& run, const State& now) override {
-    const auto& other = static_cast<const Bdf2&>(run);
-    start(now);
-    last_ = other.last_;
-    last_h_ = other.last_h_;
+  void resume(const Bdf2& run, const State& x, State& own) {
+    begin(x, own);
+    last_ = run.last_;
+    last_h_ = run.last_h_;
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const double w = last_h_ > 0 ? h / last_h_ : 0;  // w = 0: implicit Euler
     const double back = w * w / (1 + 2 * w), c = (1 + w) / (1 + 2 * w);
     if (w == 0) last_ = now;
@@ -38,7 +36,7 @@ class Bdf2 final : public ImplicitStep {
     free_ = known_ + c * h * (now.v + back * (now.v - last_.v));
     u_ = free_;
     if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
-    if (const Outcome outcome = solve_stage(now.q, c * c * h * h);
+    if (const Outcome outcome = solve_stage(now.q, next.t, c * c * h * h);
         outcome != Outcome::reached_end) {
       return outcome;
     }
@@ -50,6 +48,7 @@ class Bdf2 final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
+ private:
   State last_{0, Vec(system().size()), Vec(system().size())};
   double last_h_ = 0;
   Vec known_{system().size()};
@@ -64,7 +63,7 @@ Method bdf2() {
       .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.1, III.5",
       .order = 2,
       .traits = {Trait::implicit, Trait::accepts_massless},
-      .needs = {Need::stiffness},
+      .needs = {Need::conservative, Need::stiffness},
       .takes = {Option::solve_tolerance, Option::solver},
       .make = create<Bdf2>};
 }

@@ -34,8 +34,10 @@ Method blanes_moan4() {
           .order = 4,
           .stability_limit = 3.1634650665581848,  // where the trace of one step first exceeds 2
           .traits = {Trait::symplectic},
+          .needs = {Need::conservative},
           .takes = {Option::compensated},
-          .make = create_splitting<blanes_moan4_splitting>};
+          .splitting = &blanes_moan4_splitting(),
+          .make = create_splitting};
 }
 
 }  // namespace qddot::registered

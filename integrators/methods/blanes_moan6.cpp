@@ -37,8 +37,10 @@ Method blanes_moan6() {
           .order = 6,
           .stability_limit = 3.1414310877528075,  // where the trace of one step first exceeds 2
           .traits = {Trait::symplectic},
+          .needs = {Need::conservative},
           .takes = {Option::compensated},
-          .make = create_splitting<blanes_moan6_splitting>};
+          .splitting = &blanes_moan6_splitting(),
+          .make = create_splitting};
 }
 
 }  // namespace qddot::registered

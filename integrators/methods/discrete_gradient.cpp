@@ -17,20 +17,19 @@ namespace {
 
 class EnergyMomentum final : public ImplicitStep {
  public:
-  EnergyMomentum(const Method& method, const System& system, const Options& options)
-      : ImplicitStep(method, system, options, tolerance_for_invariants) {}
+  explicit EnergyMomentum(SystemRun& run) : ImplicitStep(run, tolerance_for_invariants) {}
 
- private:
-  void start(const State& state) override {
-    ImplicitStep::start(state);
-    acceleration(state.q, a_);
+  void begin(const State& state, State& x) {
+    ImplicitStep::begin(state, x);
+    acceleration(state, a_);
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const double s = h * h / 2;
     free_ = h * now.v;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, now.t + h / 2, s);
+        outcome != Outcome::reached_end) {
       return outcome;
     }
     a_ = (u_ - free_) / s;
@@ -39,14 +38,15 @@ class EnergyMomentum final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
+ private:
   void stage_force(const Vec& q, const Vec& u, Vec& f) override {
     x_ = q + u;
-    discrete_gradient(q, x_, f);
+    mean_force(q, x_, f);
   }
   void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                        SymmetricMatrix& k) override {
     x_ = q + u / 2;
-    weighted_stiffness(x_, compression_weight, k);
+    run_.counted().weighted_stiffness(x_, compression_weight, k);
     k.coeffs() /= 2;
   }
   bool is_minimisation() const override { return false; }
@@ -64,7 +64,7 @@ Method discrete_gradient() {
           .source = "Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, section 4",
           .order = 2,
           .traits = {Trait::implicit, Trait::cancels_torques},
-          .needs = {Need::stiffness, Need::discrete_gradient},
+          .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient, Need::autonomous},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<EnergyMomentum>};
 }

@@ -114,11 +114,10 @@ const NystromPair& dprkn12_pair() {
 
 namespace {
 
-std::unique_ptr<Integrator> make_dprkn12(const Method& method, const System& system,
-                                         const Options& options) {
+std::unique_ptr<Stepper> make_dprkn12(SystemRun& run) {
   // Its steps are too long for interpolation: no polynomial through their ends is as accurate as
   // they are.
-  return std::make_unique<Nystrom>(method, system, options, dprkn12_pair(), 0);
+  return std::make_unique<Nystrom>(run, dprkn12_pair(), 0);
 }
 
 }  // namespace
@@ -134,6 +133,8 @@ Method dprkn12() {
           .order = 12,
           .knob = Knob::rtol,
           .traits = {Trait::interpolates, Trait::bounds_steps},
+          .needs = {Need::conservative},
+          .nystrom_pair = &dprkn12_pair(),
           .make = make_dprkn12};
 }
 

@@ -48,9 +48,8 @@ const NystromPair& dprkn6_pair() {
 
 namespace {
 
-std::unique_ptr<Integrator> make_dprkn6(const Method& method, const System& system,
-                                        const Options& options) {
-  return std::make_unique<Nystrom>(method, system, options, dprkn6_pair(), 4);
+std::unique_ptr<Stepper> make_dprkn6(SystemRun& run) {
+  return std::make_unique<Nystrom>(run, dprkn6_pair(), 4);
 }
 
 }  // namespace
@@ -66,6 +65,8 @@ Method dprkn6() {
           .order = 6,
           .knob = Knob::rtol,
           .traits = {Trait::interpolates, Trait::bounds_steps},
+          .needs = {Need::conservative},
+          .nystrom_pair = &dprkn6_pair(),
           .make = make_dprkn6};
 }
 

@@ -47,9 +47,8 @@ const NystromPair& dprkn8_pair() {
 
 namespace {
 
-std::unique_ptr<Integrator> make_dprkn8(const Method& method, const System& system,
-                                        const Options& options) {
-  return std::make_unique<Nystrom>(method, system, options, dprkn8_pair(), 4);
+std::unique_ptr<Stepper> make_dprkn8(SystemRun& run) {
+  return std::make_unique<Nystrom>(run, dprkn8_pair(), 4);
 }
 
 }  // namespace
@@ -65,6 +64,8 @@ Method dprkn8() {
           .order = 8,
           .knob = Knob::rtol,
           .traits = {Trait::interpolates, Trait::bounds_steps},
+          .needs = {Need::conservative},
+          .nystrom_pair = &dprkn8_pair(),
           .make = make_dprkn8};
 }
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "qddot/analysis/linear_motion.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
@@ -20,23 +20,24 @@ namespace {
 // The most unknowns: a dense eigenproblem of about ten seconds, and n^2 numbers of memory.
 constexpr Index largest_size = 2000;
 
-class Exact final : public FixedStep {
+class Exact final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  void start(const State&) override {
+  void begin(const State& state, State& x) {
+    x = state;
     if (system().size() > largest_size) return;
     motion_ = std::make_shared<LinearMotion>(system());
     ++counts().stiffness_evaluations;
     ++counts().factorizations;
   }
 
-  void resume(const FixedStep& run, const State&) override {
-    motion_ = static_cast<const Exact&>(run).motion_;
+  void resume(const Exact& run, const State& x, State& own) {
+    own = x;
+    motion_ = run.motion_;
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     if (!motion_) {
       set_message(fmt::format("{} unknowns are too many for all modes; at most {} are allowed",
                               system().size(), largest_size));
@@ -47,6 +48,7 @@ class Exact final : public FixedStep {
     return Outcome::reached_end;
   }
 
+ private:
   std::shared_ptr<const LinearMotion> motion_;
   LinearMotion::Scratch scratch_;
 };
@@ -54,13 +56,14 @@ class Exact final : public FixedStep {
 }  // namespace
 
 Method exact() {
-  return {.name = "exact",
-          .summary = "the exact motion mode by mode, at every step size; where K is constant",
-          .source = "superposition of modes, derived in src/qddot/analysis/linear_motion.hpp",
-          .order = 0,
-          .traits = {Trait::symplectic},
-          .needs = {Need::stiffness, Need::constant_stiffness},
-          .make = create<Exact>};
+  return {
+      .name = "exact",
+      .summary = "the exact motion mode by mode, at every step size; where K is constant",
+      .source = "superposition of modes, derived in src/qddot/analysis/linear_motion.hpp",
+      .order = 0,
+      .traits = {Trait::symplectic},
+      .needs = {Need::conservative, Need::stiffness, Need::constant_stiffness, Need::autonomous},
+      .make = create<Exact>};
 }
 
 }  // namespace qddot::registered

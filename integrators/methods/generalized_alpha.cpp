@@ -32,23 +32,19 @@ Alphas without_alpha_m(double rho) {
 
 class GeneralizedAlpha : public ImplicitStep {
  public:
-  GeneralizedAlpha(const Method& method, const System& system, const Options& options,
-                   const Alphas& alpha)
-      : ImplicitStep(method, system, options), alpha_(alpha) {}
+  GeneralizedAlpha(SystemRun& run, const Alphas& alpha) : ImplicitStep(run), alpha_(alpha) {}
 
- private:
-  void start(const State& state) override {
-    ImplicitStep::start(state);
-    acceleration(state.q, a_);
+  void begin(const State& state, State& x) {
+    ImplicitStep::begin(state, x);
+    acceleration(state, a_);
     last_h_ = 0;
   }
 
-  void resume(const FixedStep& run, const State&) override {
-    const auto& other = static_cast<const GeneralizedAlpha&>(run);
-    ImplicitStep::start(State{});
-    a_ = other.a_;
-    last_a_ = other.last_a_;
-    last_h_ = other.last_h_;
+  void resume(const GeneralizedAlpha& run, const State& x, State& own) {
+    ImplicitStep::begin(x, own);
+    a_ = run.a_;
+    last_a_ = run.last_a_;
+    last_h_ = run.last_h_;
   }
 
   // The equation of motion holds between the steps, so that a_n is the acceleration at
@@ -58,7 +54,7 @@ class GeneralizedAlpha : public ImplicitStep {
   // Without that, each change of h would leave an error of first order in it. Steps only become
   // shorter (the last one, and those to observed times between two), so that the line is not
   // extended far.
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     if (last_h_ > 0 && h != last_h_) {
       a_ += (alpha_.m - alpha_.f) * (h / last_h_ - 1) * (a_ - last_a_);
     }
@@ -67,7 +63,8 @@ class GeneralizedAlpha : public ImplicitStep {
     const double s = (1 - alpha_.f) * beta / (1 - alpha_.m) * h * h;
     free_ = (1 - alpha_.f) * (h * now.v + h * h * (0.5 - beta) * a_) - s * alpha_.m * a_;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, now.t + (1 - alpha_.f) * h, s);
+        outcome != Outcome::reached_end) {
       return outcome;
     }
     last_a_ = a_;
@@ -78,6 +75,7 @@ class GeneralizedAlpha : public ImplicitStep {
     return Outcome::reached_end;
   }
 
+ private:
   const Alphas alpha_;
   Vec a_{system().size()}, last_a_{system().size()};
   double last_h_ = 0;  // 0: no step yet, and a_ is that of the start
@@ -85,14 +83,14 @@ class GeneralizedAlpha : public ImplicitStep {
 
 class ChungHulbert final : public GeneralizedAlpha {
  public:
-  ChungHulbert(const Method& method, const System& system, const Options& options)
-      : GeneralizedAlpha(method, system, options, least_damping(options.spectral_radius)) {}
+  explicit ChungHulbert(SystemRun& run)
+      : GeneralizedAlpha(run, least_damping(run.options().spectral_radius)) {}
 };
 
 class Hht final : public GeneralizedAlpha {
  public:
-  Hht(const Method& method, const System& system, const Options& options)
-      : GeneralizedAlpha(method, system, options, without_alpha_m(options.spectral_radius)) {}
+  explicit Hht(SystemRun& run)
+      : GeneralizedAlpha(run, without_alpha_m(run.options().spectral_radius)) {}
 };
 
 }  // namespace
@@ -103,7 +101,7 @@ Method generalized_alpha() {
           .source = "Chung and Hulbert, Journal of Applied Mechanics 60 (1993) 371-375, eq. 25",
           .order = 2,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
           .make = create<ChungHulbert>};
 }
@@ -114,7 +112,7 @@ Method hht() {
           .source = "Hilber, Hughes, Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283-292",
           .order = 2,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
           .make = create<Hht>};
 }

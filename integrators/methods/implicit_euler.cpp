@@ -15,11 +15,11 @@ class ImplicitEuler final : public ImplicitStep {
  public:
   using ImplicitStep::ImplicitStep;
 
- private:
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     free_ = h * now.v;
     u_ = free_;
-    if (const Outcome outcome = solve_stage(now.q, h * h); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, next.t, h * h);
+        outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
@@ -35,7 +35,7 @@ Method implicit_euler() {
           .summary = "backward Euler by Newton on the incremental potential; damps at every h",
           .source = "Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011, section 4",
           .traits = {Trait::implicit, Trait::accepts_massless},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<ImplicitEuler>};
 }

@@ -12,20 +12,19 @@ namespace {
 
 class ImplicitMidpoint final : public ImplicitStep {
  public:
-  ImplicitMidpoint(const Method& method, const System& system, const Options& options)
-      : ImplicitStep(method, system, options, tolerance_for_invariants) {}
+  explicit ImplicitMidpoint(SystemRun& run) : ImplicitStep(run, tolerance_for_invariants) {}
 
- private:
-  void start(const State& state) override {
-    ImplicitStep::start(state);
-    acceleration(state.q, a_);
+  void begin(const State& state, State& x) {
+    ImplicitStep::begin(state, x);
+    acceleration(state, a_);
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const double s = h * h / 4;
     free_ = h / 2 * now.v;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, now.t + h / 2, s);
+        outcome != Outcome::reached_end) {
       return outcome;
     }
     a_ = (u_ - free_) / s;
@@ -34,6 +33,7 @@ class ImplicitMidpoint final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
+ private:
   Vec a_{system().size()};  // at the last step's midpoint; predicts the next
 };
 
@@ -45,7 +45,7 @@ Method implicit_midpoint() {
           .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, eq. II.1.7",
           .order = 2,
           .traits = {Trait::implicit, Trait::symplectic},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<ImplicitMidpoint>};
 }

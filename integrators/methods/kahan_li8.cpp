@@ -40,8 +40,10 @@ Method kahan_li8() {
           .order = 8,
           .stability_limit = 3.0964386800007322,  // where the trace of one step first exceeds 2
           .traits = {Trait::symplectic},
+          .needs = {Need::conservative},
           .takes = {Option::compensated},
-          .make = create_splitting<kahan_li8_splitting>};
+          .splitting = &kahan_li8_splitting(),
+          .make = create_splitting};
 }
 
 }  // namespace qddot::registered

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
@@ -58,32 +58,36 @@ constexpr std::array<double, 5> suzuki = [] {
 }();
 
 template <const auto& gamma>
-class LinearMidpoint final : public FixedStep {
+class LinearMidpoint final : public Formula {
  public:
-  LinearMidpoint(const Method& method, const System& system, const Options& options)
-      : FixedStep(method, system, options),
-        split_(split_of(system)),
-        implicit_(split_ ? *split_->stiff_block : system),
-        split_stiffness_(capability<SplitStiffness>(implicit_)),
+  explicit LinearMidpoint(SystemRun& run)
+      : Formula(run),
+        split_(system().split()),
+        implicit_(split_ ? *split_->stiff_block : system()),
         k_(implicit_.stiffness_pattern()),
-        f_(system.size()),
-        change_(system.size()),
+        f_(system().size()),
+        change_(system().size()),
         own_(implicit_.size()),
         own_change_(implicit_.size()) {
-    if (implicit_.size() > 0) matrix_ = std::make_unique<EffectiveMass>(implicit_, options.solver);
+    if (implicit_.size() > 0) {
+      matrix_ = std::make_unique<EffectiveMass>(implicit_, options().solver);
+    }
   }
 
- private:
-  void start(const State&) override { factorized_h_ = 0; }
+  void begin(const State& state, State& x) {
+    x = state;
+    factorized_h_ = 0;
+  }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     next.q = now.q;
     next.v = now.v;
-    double before = 0;
+    double before = 0, t = now.t;
     for (const double g : gamma) {
+      t += (before + g) * h / 2;
       next.q += ((before + g) * h / 2) * next.v;
-      force(next.q, f_);
-      if (const Outcome outcome = kick(g * h, next); outcome != Outcome::reached_end) {
+      force({t, next.q}, f_);
+      if (const Outcome outcome = kick(g * h, t, next); outcome != Outcome::reached_end) {
         return outcome;
       }
       before = g;
@@ -92,10 +96,11 @@ class LinearMidpoint final : public FixedStep {
     return Outcome::reached_end;
   }
 
+ private:
   // v += h A^-1 f; A is M for the explicit unknowns.
-  Outcome kick(double h, State& next) {
+  Outcome kick(double h, double t, State& next) {
     if (!split_) {
-      Outcome outcome = factorize(h, next.q);
+      Outcome outcome = factorize(h, {t, next.q});
       if (outcome == Outcome::reached_end) outcome = solve(f_, change_);
       if (outcome == Outcome::reached_end) next.v += h * change_;
       return outcome;
@@ -104,7 +109,7 @@ class LinearMidpoint final : public FixedStep {
     if (matrix_) {
       const std::vector<Index>& stiff = split_->stiff_unknowns;
       for (std::size_t a = 0; a < stiff.size(); ++a) own_[a] = next.q[stiff[a]];
-      if (const Outcome outcome = factorize(h, own_); outcome != Outcome::reached_end) {
+      if (const Outcome outcome = factorize(h, {t, own_}); outcome != Outcome::reached_end) {
         return outcome;
       }
       for (std::size_t a = 0; a < stiff.size(); ++a) own_[a] = f_[stiff[a]];
@@ -119,36 +124,27 @@ class LinearMidpoint final : public FixedStep {
 
   // Factorises A at x, the positions of the implicit part. With a constant K this is done for
   // another |h| only.
-  Outcome factorize(double h, const Vec& x) {
+  Outcome factorize(double h, const At& x) {
     if (implicit_.stiffness_is_constant() && std::abs(h) == factorized_h_) {
       return Outcome::reached_end;
     }
-    ++counts().stiffness_evaluations;
-    {
-      const Stopwatch watch(seconds(), &Seconds::stiffness);
-      if (split_stiffness_) {
-        split_stiffness_->material_stiffness(x, k_);
-      } else {
-        implicit_.stiffness(x, k_);
-      }
-    }
+    run_.counted().material_stiffness(implicit_, x, k_);
     if (!k_.coeffs().allFinite()) return Outcome::not_finite;
     factorized_h_ = std::abs(h);
     ++counts().factorizations;
-    const Stopwatch watch(seconds(), &Seconds::factorization);
+    const Stopwatch watch(clock(), &Seconds::factorization);
     return matrix_->factorize_positive(1, h * h / 4, k_) ? Outcome::reached_end
                                                          : Outcome::indefinite_matrix;
   }
 
   Outcome solve(const Vec& b, Vec& x) {
     ++counts().solves;
-    const Stopwatch watch(seconds(), &Seconds::solve);
+    const Stopwatch watch(clock(), &Seconds::solve);
     return check_solve(matrix_->solve(b, x));
   }
 
   const Split* split_;                     // nullptr: every spring is in the matrix
   const System& implicit_;                 // the system of the matrix's stiffness
-  const SplitStiffness* split_stiffness_;  // its material part; nullptr if it has none
   std::unique_ptr<EffectiveMass> matrix_;  // empty if the implicit part has no unknowns
   SymmetricMatrix k_;
   Vec f_, change_, own_, own_change_;
@@ -166,7 +162,7 @@ Method linear_midpoint() {
           .order = 2,
           .solves_stiff_part = true,
           .traits = {Trait::implicit, Trait::cancels_torques},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
           .make = create<LinearMidpoint<plain>>};
 }
@@ -178,7 +174,7 @@ Method linear_midpoint4() {
           .order = 4,
           .solves_stiff_part = true,
           .traits = {Trait::implicit, Trait::cancels_torques},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
           .make = create<LinearMidpoint<suzuki>>};
 }

@@ -46,7 +46,7 @@ Method local_global() {
               "Liu, Bargteil, O'Brien, Kavan, Fast Simulation of Mass-Spring Systems, "
               "SIGGRAPH Asia 2013",
           .traits = {Trait::implicit},
-          .needs = {Need::laplacian},
+          .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
           .make = create<Plain>};
 }

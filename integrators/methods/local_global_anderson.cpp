@@ -19,9 +19,8 @@ constexpr int window = 5;
 
 class Anderson final : public LocalGlobal {
  public:
-  Anderson(const Method& method, const System& system, const Options& options)
-      : LocalGlobal(method, system, options) {
-    for (int i = 0; i < window; ++i) dp_[i] = dg_[i] = Vec(system.size());
+  explicit Anderson(SystemRun& run) : LocalGlobal(run) {
+    for (int i = 0; i < window; ++i) dp_[i] = dg_[i] = Vec(system().size());
   }
 
  private:
@@ -100,7 +99,7 @@ Method local_global_anderson() {
               "Peng, Deng, Zhang, Geng, Qin, Liu, Anderson Acceleration for Geometry "
               "Optimization and Physics Simulation, SIGGRAPH 2018",
           .traits = {Trait::implicit},
-          .needs = {Need::laplacian},
+          .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
           .make = create<Anderson>};
 }

@@ -28,12 +28,11 @@ namespace {
 
 class Chebyshev final : public LocalGlobal {
  public:
-  Chebyshev(const Method& method, const System& system, const Options& options)
-      : LocalGlobal(method, system, options) {
-    SymmetricMatrix l = system.stiffness_pattern();
-    capability<Laplacian>(system)->laplacian(l);
+  explicit Chebyshev(SystemRun& run) : LocalGlobal(run) {
+    SymmetricMatrix l = system().stiffness_pattern();
+    system().laplacian()->assemble_laplacian(l);
     Vec row_sums;
-    frequency_ = frequency_bound(system.mass(), l, row_sums);
+    frequency_ = frequency_bound(system().mass(), l, row_sums);
   }
 
  private:
@@ -93,7 +92,7 @@ Method local_global_chebyshev() {
               "Wang, A Chebyshev Semi-Iterative Approach for Accelerating Projective and "
               "Position-Based Dynamics, SIGGRAPH Asia 2015",
           .traits = {Trait::implicit},
-          .needs = {Need::laplacian},
+          .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
           .make = create<Chebyshev>};
 }

@@ -25,9 +25,8 @@ constexpr double hidden = 100 * machine_epsilon;
 
 class Lbfgs final : public LocalGlobal {
  public:
-  Lbfgs(const Method& method, const System& system, const Options& options)
-      : LocalGlobal(method, system, options) {
-    for (Pair& pair : pairs_) pair.s = pair.y = Vec(system.size());
+  explicit Lbfgs(SystemRun& run) : LocalGlobal(run) {
+    for (Pair& pair : pairs_) pair.s = pair.y = Vec(system().size());
   }
 
  private:
@@ -102,7 +101,7 @@ Method local_global_lbfgs() {
               "Liu, Bouaziz, Kavan, Quasi-Newton Methods for Real-Time Simulation of "
               "Hyperelastic Materials, ACM TOG 36:3, 2017",
           .traits = {Trait::implicit},
-          .needs = {Need::laplacian},
+          .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
           .make = create<Lbfgs>};
 }

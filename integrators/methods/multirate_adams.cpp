@@ -22,7 +22,7 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/base/renewed_bound.hpp"
 #include "qddot/integrators/base/stiff_flow.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -34,49 +34,50 @@ namespace {
 constexpr double most_short_steps = 1e6;
 
 template <int k>
-class MultirateAdams final : public FixedStep {
+class MultirateAdams final : public Formula {
   using Row = Eigen::Matrix<double, k, 1>;  // one number for each of the k points, the newest first
 
   static constexpr int stiff_order = k <= 3 ? 2 : 4;
   using Flow = StiffFlow<stiff_order>;
 
  public:
-  MultirateAdams(const Method& method, const System& system, const Options& options)
-      : FixedStep(method, system, options),
-        split_(*split_of(system)),
+  explicit MultirateAdams(SystemRun& run)
+      : Formula(run),
+        split_(*system().split()),
         block_(*split_.stiff_block),
         flow_(block_.mass(), k),
         stiff_bound_(block_),
-        a_(Eigen::MatrixXd::Zero(system.size(), k + 1)),
-        f_(system.size()),
+        a_(Eigen::MatrixXd::Zero(system().size(), k + 1)),
+        f_(system().size()),
         x_(block_.size()),
         u_(block_.size()),
-        from_{0, Vec(system.size()), Vec(system.size())} {}
+        from_{0, Vec(system().size()), Vec(system().size())} {}
 
- private:
-  void start(const State& state) override {
+  void begin(const State& state, State& x) {
+    x = state;
     stiff_bound_.start();
     newest_ = 0;
     is_known_ = k == 1;
     evaluate(state.q, 0, newest_);
   }
 
-  void resume(const FixedStep& run, const State& now) override {
-    const auto& other = static_cast<const MultirateAdams&>(run);
-    if (!other.is_known_) return start(now);
+  void resume(const MultirateAdams& run, const State& x, State& own) {
+    if (!run.is_known_) return begin(x, own);
+    own = x;
     stiff_bound_.start();
-    a_ = other.a_;
-    at_ = other.at_;
-    newest_ = other.newest_;
+    a_ = run.a_;
+    at_ = run.at_;
+    newest_ = run.newest_;
     is_known_ = true;
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const Outcome outcome = is_known_ ? step_from_known(now, h, next) : first_step(now, h, next);
     for (double& t : at_) t -= h;
     return outcome;
   }
 
+ private:
   Outcome step_from_known(const State& now, double h, State& next) {
     if (const Outcome outcome = follow(now, 0, h, next); outcome != Outcome::reached_end) {
       return outcome;
@@ -242,7 +243,7 @@ Method multirate_adams() {
               "Demirel, Niegemann, Busch and Hochbruck, J. Computational Physics 285 (2015) "
               "133-148",
           .order = k + 1,
-          .needs = {Need::stiffness, Need::split_forces},
+          .needs = {Need::conservative, Need::stiffness, Need::split_forces},
           .make = create<MultirateAdams<k>>};
 }
 

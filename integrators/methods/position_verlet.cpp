@@ -26,8 +26,10 @@ Method position_verlet() {
           .order = 2,
           .stability_limit = 2,
           .traits = {Trait::symplectic},
+          .needs = {Need::conservative},
           .takes = {Option::compensated},
-          .make = create_splitting<position_verlet_splitting>};
+          .splitting = &position_verlet_splitting(),
+          .make = create_splitting};
 }
 
 }  // namespace qddot::registered

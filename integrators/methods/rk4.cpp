@@ -10,39 +10,41 @@
 // amplitude grows.
 #include <cmath>
 
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/vector_updates.hpp"
 
 namespace qddot::registered {
 namespace {
 
-class Rk4 final : public FixedStep {
+class Rk4 final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     next.q = now.q;
     next.v = now.v;
-    add_stage(now.q, now.v, h / 6, next);
+    add_stage(now, h / 6, next);
+    at_.t = now.t + h / 2;
     add_scaled(now.q, h / 2, now.v, at_.q);
     add_scaled(now.v, h / 2, a_, at_.v);
-    add_stage(at_.q, at_.v, h / 3, next);
+    add_stage(at_, h / 3, next);
     add_scaled(now.q, h / 2, at_.v, at_.q);
     add_scaled(now.v, h / 2, a_, at_.v);
-    add_stage(at_.q, at_.v, h / 3, next);
+    add_stage(at_, h / 3, next);
+    at_.t = next.t;
     add_scaled(now.q, h, at_.v, at_.q);
     add_scaled(now.v, h, a_, at_.v);
-    add_stage(at_.q, at_.v, h / 6, next);
+    add_stage(at_, h / 6, next);
     return Outcome::reached_end;
   }
 
+ private:
   // Computes a_i at a stage and adds `weight` times the stage's rate to `next`.
-  void add_stage(const Vec& q, const Vec& v, double weight, State& next) {
-    force(q, a_);
+  void add_stage(const State& stage, double weight, State& next) {
+    force(stage, a_);
     divide(a_, system().mass(), a_);
-    add_scaled(next.q, weight, v, next.q);
+    add_scaled(next.q, weight, stage.v, next.q);
     add_scaled(next.v, weight, a_, next.v);
   }
 

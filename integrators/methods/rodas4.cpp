@@ -32,9 +32,8 @@ const RosenbrockTable& rodas4_table() {
 
 namespace {
 
-std::unique_ptr<Integrator> make(const Method& method, const System& system,
-                                 const Options& options) {
-  return std::make_unique<Rosenbrock>(method, system, options, rodas4_table(), 3);
+std::unique_ptr<Stepper> make(SystemRun& run) {
+  return std::make_unique<Rosenbrock>(run, rodas4_table(), 3);
 }
 
 }  // namespace
@@ -46,7 +45,7 @@ Method rodas4() {
           .order = 4,
           .knob = Knob::rtol,
           .traits = {Trait::implicit, Trait::interpolates},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness, Need::autonomous},
           .takes = {Option::solver},
           .make = make};
 }

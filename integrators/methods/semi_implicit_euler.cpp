@@ -10,22 +10,25 @@
 // springs may make the matrix indefinite. It is solved with as it stands. A singular matrix ends
 // the run, and conjugate gradients end it at an indefinite one.
 #include "qddot/algebra/effective_mass.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {
 
-class SemiImplicitEuler final : public FixedStep {
+class SemiImplicitEuler final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  void start(const State&) override { factorized_h_ = 0; }
+  void begin(const State& state, State& x) {
+    x = state;
+    factorized_h_ = 0;
+  }
 
-  Outcome step(const State& now, double h, State& next) override {
-    force(now.q, f_);
-    if (!factorize(now.q, h)) return indefinite_at(now.q);
+  Outcome step(const State& now, double h, State& next) {
+    const At at(next.t, now.q);
+    force(at, f_);
+    if (!factorize(at, h)) return indefinite_at(now.q);
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
     if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
       return outcome;
@@ -34,18 +37,19 @@ class SemiImplicitEuler final : public FixedStep {
     return Outcome::reached_end;
   }
 
-  // Factorises M - h^2 K(q) unless the last factors are of this matrix.
-  bool factorize(const Vec& q, double h) {
+ private:
+  // Factorises M - h^2 K unless the last factors are of this matrix.
+  bool factorize(const At& at, double h) {
     if (system().stiffness_is_constant() && h == factorized_h_) return true;
-    stiffness(q, k_);
+    stiffness(at, k_);
     ++counts().factorizations;
     factorized_h_ = h;
-    const Stopwatch watch(seconds(), &Seconds::factorization);
+    const Stopwatch watch(clock(), &Seconds::factorization);
     return matrix_.factorize(1, h * h, k_) != EffectiveMass::Definiteness::singular;
   }
 
   Outcome solve(const Vec& b, Vec& x) {
-    const Stopwatch watch(seconds(), &Seconds::solve);
+    const Stopwatch watch(clock(), &Seconds::solve);
     ++counts().solves;
     const Outcome outcome = check_solve(matrix_.solve(b, x));
     if (outcome == Outcome::indefinite_matrix) {
@@ -69,7 +73,7 @@ Method semi_implicit_euler() {
           .summary = "linearly implicit Euler; one linear solve a step, damps",
           .source = "Baraff and Witkin, Large Steps in Cloth Simulation, SIGGRAPH 1998, eq. 6",
           .traits = {Trait::implicit, Trait::linearly_implicit, Trait::accepts_massless},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
           .make = create<SemiImplicitEuler>};
 }

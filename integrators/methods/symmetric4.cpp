@@ -34,7 +34,9 @@ Method symmetric4() {
       .order = 4,
       .stability_limit = 1.8257418583505537,
       .recurrence_roots = symmetric_roots<symmetric4_formula>,
-      .make = create_symmetric<symmetric4_formula>};
+      .needs = {Need::conservative},
+      .symmetric_formula = &symmetric4_formula(),
+      .make = create_symmetric};
 }
 
 }  // namespace qddot::registered

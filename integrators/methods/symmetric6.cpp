@@ -32,7 +32,9 @@ Method symmetric6() {
           .order = 6,
           .stability_limit = 1.1254974776976225,
           .recurrence_roots = symmetric_roots<symmetric6_formula>,
-          .make = create_symmetric<symmetric6_formula>};
+          .needs = {Need::conservative},
+          .symmetric_formula = &symmetric6_formula(),
+          .make = create_symmetric};
 }
 
 }  // namespace qddot::registered

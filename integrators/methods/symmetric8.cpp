@@ -31,7 +31,9 @@ Method symmetric8() {
           .order = 8,
           .stability_limit = 0.9601524432891618,
           .recurrence_roots = symmetric_roots<symmetric8_formula>,
-          .make = create_symmetric<symmetric8_formula>};
+          .needs = {Need::conservative},
+          .symmetric_formula = &symmetric8_formula(),
+          .make = create_symmetric};
 }
 
 }  // namespace qddot::registered

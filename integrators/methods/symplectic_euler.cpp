@@ -5,29 +5,30 @@
 // bounded for h w < 2 and grows above. The literature often calls this method semi-implicit Euler.
 // Here semi_implicit_euler is the linearly implicit method of the lecture.
 #include "qddot/integrators/base/compensated_sum.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {
 
-class SymplecticEuler final : public FixedStep {
+class SymplecticEuler final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  void start(const State&) override {
+  void begin(const State& state, State& x) {
+    x = state;
     q_.restart();
     v_.restart();
   }
 
-  Outcome step(const State& now, double h, State& next) override {
-    force(now.q, f_);
+  Outcome step(const State& now, double h, State& next) {
+    force(now, f_);
     v_.add_quotient(now.v, h, f_, system().mass(), next.v);
     q_.add_scaled(now.q, h, next.v, next.q);
     return Outcome::reached_end;
   }
 
+ private:
   CompensatedSum q_{options().compensated, system().size()};
   CompensatedSum v_{options().compensated, system().size()};
   Vec f_{system().size()};

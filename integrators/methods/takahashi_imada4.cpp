@@ -10,7 +10,7 @@
 // a step turns by the angle of cosine 1 - z/2 + z^2/24. No vibration grows for h w < sqrt 12.
 #include <cmath>
 
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/vector_updates.hpp"
 
@@ -25,104 +25,108 @@ namespace {
 //   q - s M^-1 f + s^2 M^-1 K M^-1 f = q - s/4 M^-1 (3 (F- + F+) - (G- + G+)),
 //   v + s M^-1 K v = v + s/h M^-1 (F+ - F-).
 // Its next term for v does not make energies more accurate.
-class TakahashiImada4 final : public FixedStep {
- public:
-  using FixedStep::FixedStep;
-
- private:
-  // Positions and velocities in the coordinates of the steps.
-  struct Kernel {
-    Vec q, v;
-  };
+class TakahashiImada4 final : public Formula {
   // The forces of a step, at its middle and shifted.
   struct Kick {
     Vec f, shifted;
   };
 
-  void start(const State&) override { has_begun_ = ahead_is_known_ = false; }
+ public:
+  struct X : State {
+    bool has_begun = false;  // whether q and v are in the coordinates of the steps
+    bool has_ahead = false;  // whether `ahead`, of the step from here, is known
+    Kick behind, ahead;
+    bool is_shown = false;  // whether the state is known:
+    Vec shown_q, shown_v;
+  };
 
-  Outcome step(const State& now, double h, State& next) override {
-    if (h != options().step_size) {  // the last step, or one to a time between steps
-      enter(now, h, now_);
-      has_begun_ = ahead_is_known_ = false;
-      advance(h);
-      std::swap(now_, next_);
-      std::swap(behind_, ahead_);
-      ahead_is_known_ = false;
-      leave(h, next);
-      return Outcome::reached_end;
+  using Formula::Formula;
+
+  void begin(const State& state, X& x) {
+    static_cast<State&>(x) = state;
+    x.has_begun = x.has_ahead = x.is_shown = false;
+    for (Vec* all :
+         {&x.behind.f, &x.behind.shifted, &x.ahead.f, &x.ahead.shifted, &x.shown_q, &x.shown_v}) {
+      all->resize(state.q.size());
     }
-    if (!has_begun_) enter(now, h, now_);
-    has_begun_ = true;
-    advance(h);
-    next.q = next_.q;
-    next.v = next_.v;
-    leave_incomplete();
+    entered_ = x;
+    state_ = state;
+  }
+
+  Outcome step(X& x, double h, X& next) {
+    const bool is_last = h != options().step_size;  // or one to a time between steps
+    const bool enters = is_last || !x.has_begun;
+    if (enters) {
+      show(x, true, state_);
+      enter(h);
+    }
+    X& from = enters ? entered_ : x;
+    look_ahead(from, h);
+    add_quotient(from.v, h, from.ahead.shifted, system().mass(), next.v);
+    add_scaled(middle_, h / 2, next.v, next.q);
+    std::swap(from.ahead, next.behind);
+    next.has_begun = true;
+    from.has_ahead = next.has_ahead = next.is_shown = false;
+    if (is_last) {
+      look_ahead(next, h);
+      leave(next, h, next.q, next.v);
+      next.has_begun = false;
+    }
     return Outcome::reached_end;
   }
 
-  void accepted() override {
-    std::swap(now_, next_);
-    std::swap(behind_, ahead_);
-    ahead_is_known_ = false;
+  void show(X& x, bool may_evaluate, State& state) {
+    if (x.has_begun && may_evaluate && !x.is_shown) {
+      look_ahead(x, options().step_size);
+      leave(x, options().step_size, x.shown_q, x.shown_v);
+      x.is_shown = true;
+    }
+    state.q = x.has_begun && x.is_shown ? x.shown_q : x.q;
+    state.v = x.has_begun && x.is_shown ? x.shown_v : x.v;
   }
 
-  void complete(State& now, bool may_evaluate) override {
-    if (may_evaluate) leave(options().step_size, now);
+ private:
+  // Computes the forces of a step h from x; leaves the position of the first one in middle_.
+  void look_ahead(X& x, double h) {
+    add_scaled(x.q, h / 2, x.v, middle_);
+    if (x.has_ahead) return;
+    force(middle_, x.ahead.f);
+    add_quotient(middle_, h * h / 12, x.ahead.f, system().mass(), x_);
+    force(x_, x.ahead.shifted);
+    x.has_ahead = true;
   }
 
-  // Computes the forces of a step h from now_; leaves the position of the first one in next_.q.
-  void look_ahead(double h) {
-    add_scaled(now_.q, h / 2, now_.v, next_.q);
-    if (ahead_is_known_) return;
-    force(next_.q, ahead_.f);
-    add_quotient(next_.q, h * h / 12, ahead_.f, system().mass(), x_);
-    force(x_, ahead_.shifted);
-    ahead_is_known_ = true;
-  }
-
-  // Advances from now_ to next_.
-  void advance(double h) {
-    look_ahead(h);
-    add_quotient(now_.v, h, ahead_.shifted, system().mass(), next_.v);
-    add_scaled(next_.q, h / 2, next_.v, next_.q);
-  }
-
-  // K v is the central difference of f along v, over a thousandth of a step to either side.
-  void enter(const State& from, double h, Kernel& to) {
+  // Transforms state_ to the coordinates of steps h, in entered_. K v is the central difference of
+  // f along v, over a thousandth of a step to either side.
+  void enter(double h) {
     const double s = h * h / 24, e = 1e-3 * h;
     const Vec& mass = system().mass();
-    add_scaled(from.q, e, from.v, x_);
-    force(x_, ahead_.f);
-    add_scaled(from.q, -e, from.v, x_);
-    force(x_, behind_.f);
-    add_quotient(from.v, -s / (2 * e), ahead_.f, mass, to.v);
-    add_quotient(to.v, s / (2 * e), behind_.f, mass, to.v);
-    force(from.q, ahead_.f);
-    add_quotient(from.q, s, ahead_.f, mass, to.q);
+    X& to = entered_;
+    add_scaled(state_.q, e, state_.v, x_);
+    force(x_, to.ahead.f);
+    add_scaled(state_.q, -e, state_.v, x_);
+    force(x_, to.behind.f);
+    add_quotient(state_.v, -s / (2 * e), to.ahead.f, mass, to.v);
+    add_quotient(to.v, s / (2 * e), to.behind.f, mass, to.v);
+    force(state_.q, to.ahead.f);
+    add_quotient(state_.q, s, to.ahead.f, mass, to.q);
+    to.has_ahead = false;
   }
 
-  // Transforms now_, which a step h has reached, to the motion's own coordinates.
-  void leave(double h, State& to) {
-    look_ahead(h);
+  // Transforms x, which a step h has reached and whose forces ahead are known, to the motion's own
+  // coordinates; q and v may be those of x.
+  void leave(const X& x, double h, Vec& q, Vec& v) {
     const double s = h * h / 24;
     const Vec& mass = system().mass();
-    x_ = 3 * (behind_.f + ahead_.f) - (behind_.shifted + ahead_.shifted);
-    add_quotient(now_.q, -s / 4, x_, mass, to.q);
-    add_quotient(now_.v, s / h, ahead_.f, mass, to.v);
-    add_quotient(to.v, -s / h, behind_.f, mass, to.v);
+    x_ = 3 * (x.behind.f + x.ahead.f) - (x.behind.shifted + x.ahead.shifted);
+    add_quotient(x.q, -s / 4, x_, mass, q);
+    add_quotient(x.v, s / h, x.ahead.f, mass, v);
+    add_quotient(v, -s / h, x.behind.f, mass, v);
   }
 
-  Kernel now_ = two_vectors<Kernel>(), next_ = two_vectors<Kernel>();
-  Kick behind_ = two_vectors<Kick>(), ahead_ = two_vectors<Kick>();
-  bool has_begun_ = false;
-  bool ahead_is_known_ = false;  // whether ahead_ belongs to now_
-  Vec x_{system().size()};
-
-  template <class T>
-  T two_vectors() const {
-    return {Vec(system().size()), Vec(system().size())};
-  }
+  X entered_;
+  State state_;
+  Vec middle_{system().size()}, x_{system().size()};
 };
 
 std::vector<std::complex<double>> roots(double h_omega) {
@@ -149,6 +153,7 @@ Method takahashi_imada4() {
           .order = 4,
           .stability_limit = std::sqrt(12),
           .recurrence_roots = roots,
+          .needs = {Need::conservative, Need::autonomous},
           .make = create<TakahashiImada4>};
 }
 

@@ -17,17 +17,16 @@ class Trapezoidal final : public ImplicitStep {
  public:
   using ImplicitStep::ImplicitStep;
 
- private:
-  void start(const State& state) override {
-    ImplicitStep::start(state);
-    acceleration(state.q, a_);
+  void begin(const State& state, State& x) {
+    ImplicitStep::begin(state, x);
+    acceleration(state, a_);
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const double s = h * h / 4;
     free_ = h * now.v + s * a_;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, next.t, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
@@ -36,6 +35,7 @@ class Trapezoidal final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
+ private:
   Vec a_{system().size()};
 };
 
@@ -47,7 +47,7 @@ Method trapezoidal() {
           .source = "Newmark, Journal of the Engineering Mechanics Division 85 (1959) 67-94",
           .order = 2,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<Trapezoidal>};
 }

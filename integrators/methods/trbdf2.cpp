@@ -17,17 +17,17 @@ class TrBdf2 final : public ImplicitStep {
  public:
   using ImplicitStep::ImplicitStep;
 
- private:
-  void start(const State& state) override {
-    ImplicitStep::start(state);
-    acceleration(state.q, a_);
+  void begin(const State& state, State& x) {
+    ImplicitStep::begin(state, x);
+    acceleration(state, a_);
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     const double c = g * h / 2, s = c * c;
     free_ = 2 * c * now.v + s * a_;
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, now.t + g * h, s);
+        outcome != Outcome::reached_end) {
       return outcome;
     }
     ug_ = u_;
@@ -36,7 +36,7 @@ class TrBdf2 final : public ImplicitStep {
 
     free_ = b * ug_ + c * (now.v + b * (vg_ - now.v));
     u_ = free_ + s * a_;
-    if (const Outcome outcome = solve_stage(now.q, s); outcome != Outcome::reached_end) {
+    if (const Outcome outcome = solve_stage(now.q, next.t, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
@@ -45,6 +45,7 @@ class TrBdf2 final : public ImplicitStep {
     return Outcome::reached_end;
   }
 
+ private:
   Vec a_{system().size()};
   Vec ug_{system().size()}, vg_{system().size()};
 };
@@ -57,7 +58,7 @@ Method trbdf2() {
           .source = "Hosea and Shampine, Applied Numerical Mathematics 20 (1996) 21-37",
           .order = 2,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<TrBdf2>};
 }

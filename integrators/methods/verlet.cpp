@@ -6,59 +6,59 @@
 // first of the next: one force a step, and one to begin. A vibration q'' = -w^2 q stays bounded for
 // h w < 2 and grows above.
 #include "qddot/integrators/base/compensated_sum.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
 namespace {
 
 // The second kick of a step, the first of the next and the drift are done in one pass over the
-// vectors: a step ends with v_{n+1/2} until it is observed.
-class Verlet final : public FixedStep {
+// vectors: x has v_{n+1/2}, and its last kick is still to come.
+class Verlet final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  struct X : State {
+    Vec f;            // at q
+    double half = 0;  // the kick that v lacks [s]
+  };
 
- private:
-  void start(const State& state) override {
+  using Formula::Formula;
+
+  void begin(const State& state, X& x) {
     q_.restart();
     v_.restart();
-    force(state.q, f_);
+    static_cast<State&>(x) = state;
+    x.f.resize(state.q.size());
+    x.half = 0;
+    force({state.t, state.q}, x.f);
   }
 
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const X& x, double h, X& next) {
     const Vec& mass = system().mass();
     if (options().compensated) {
-      v_.add_quotient(now.v, h / 2, f_, mass, next.v);
-      q_.add_scaled(now.q, h, next.v, next.q);
-      force(next.q, f_);
-      v_.add_quotient(next.v, h / 2, f_, mass, next.v);
+      v_.add_quotient(x.v, h / 2, x.f, mass, next.v);
+      q_.add_scaled(x.q, h, next.v, next.q);
+      force({next.t, next.q}, next.f);
+      v_.add_quotient(next.v, h / 2, next.f, mass, next.v);
       return Outcome::reached_end;
     }
-    kick_and_drift({now.q, now.v, f_, mass}, is_complete() ? 0 : half_, h / 2, h, next.q, next.v);
-    force(next.q, f_next_);
-    half_next_ = h / 2;
-    leave_incomplete();
+    kick_and_drift({x.q, x.v, x.f, mass}, x.half, h / 2, h, next.q, next.v);
+    force({next.t, next.q}, next.f);
+    next.half = h / 2;
     return Outcome::reached_end;
   }
 
-  double squared_speed(const State& next) override {
-    return squared_norm_of_kicked(next.v, half_next_, f_next_, system().mass());
+  void show(const X& x, bool, State& state) {
+    state.q = x.q;
+    add_quotient(x.v, x.half, x.f, system().mass(), state.v);
   }
 
-  void accepted() override {
-    if (options().compensated) return;
-    f_.swap(f_next_);
-    half_ = half_next_;
+  double squared_speed(const X& next) {
+    return squared_norm_of_kicked(next.v, next.half, next.f, system().mass());
   }
 
-  void complete(State& now, bool) override {
-    add_quotient(now.v, half_, f_, system().mass(), now.v);
-  }
-
+ private:
   CompensatedSum q_{options().compensated, system().size()};
   CompensatedSum v_{options().compensated, system().size()};
-  Vec f_{system().size()}, f_next_{system().size()};  // at the start and at the end of the step
-  double half_ = 0, half_next_ = 0;                   // last kick of the step that led there [s]
 };
 
 }  // namespace
@@ -70,6 +70,7 @@ Method verlet() {
           .order = 2,
           .stability_limit = 2,
           .traits = {Trait::symplectic},
+          .needs = {Need::conservative},
           .takes = {Option::compensated},
           .make = create<Verlet>};
 }

@@ -13,15 +13,14 @@ constexpr double fraction = 0.99;
 
 }  // namespace
 
-Arkode::Arkode(const Method& method, const System& system, const Options& options,
-               const Tables& tables, ARKRhsFn explicit_rate, ARKRhsFn implicit_rate,
+Arkode::Arkode(SystemRun& run, const Tables& tables, ARKRhsFn explicit_rate, ARKRhsFn implicit_rate,
                MakeMatrix make_matrix, const System& implicit_part)
-    : Stepper(method, system, options, make_matrix, implicit_part),
+    : Library(run, make_matrix, implicit_part),
       explicit_rate_(explicit_rate),
       implicit_rate_(implicit_rate),
       memory_(check(ARKStepCreate(explicit_rate, implicit_rate, 0, y(), context()))) {
-  check(ARKStepSetUserData(memory(), static_cast<Stepper*>(this)), "ARKStepSetUserData");
-  check(ARKStepSetErrHandlerFn(memory(), keep_message, static_cast<Stepper*>(this)),
+  check(ARKStepSetUserData(memory(), static_cast<Library*>(this)), "ARKStepSetUserData");
+  check(ARKStepSetErrHandlerFn(memory(), keep_message, static_cast<Library*>(this)),
         "ARKStepSetErrHandlerFn");
   const auto* either = tables.implicit_table ? tables.implicit_table : tables.explicit_table;
   check(ARKStepSetTables(memory(), either->q, either->p, tables.implicit_table,
@@ -55,13 +54,13 @@ void Arkode::limit_steps(const System& part, double y) {
   check(ARKStepSetCFLFraction(memory(), fraction), "ARKStepSetCFLFraction");
 }
 
-int Arkode::stable_step(N_Vector y, double, double* h, void* user) {
+int Arkode::stable_step(N_Vector y, double t, double* h, void* user) {
   auto& self = *static_cast<Arkode*>(user);
   return self.guarded([&] {
     Limit& limit = *self.limit_;
     const double w_max = limit.w_max.at(limit.calls++, [&](SymmetricMatrix& k) {
       limit.q = Halves(y).q;
-      self.stiffness(limit.part, limit.q, k);
+      self.stiffness(limit.part, {t, limit.q}, k);
     });
     *h = w_max > 0 ? limit.y / (fraction * w_max) : INFINITY;
     return true;
@@ -89,23 +88,22 @@ int Arkode::take_step(double t_stop, double& t) {
   return ARKStepEvolve(memory(), t_stop, y(), &t, ARK_ONE_STEP);
 }
 
-int Arkode::linear_system(double, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, int jok, int* jcur,
+int Arkode::linear_system(double t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, int jok, int* jcur,
                           double gamma, void* self, N_Vector, N_Vector, N_Vector) {
-  return static_cast<Arkode*>(static_cast<Stepper*>(self))->set_matrix(y, jok, jcur, gamma);
+  return static_cast<Arkode*>(static_cast<Library*>(self))->set_matrix(t, y, jok, jcur, gamma);
 }
 
-void Arkode::collect_counts() {
-  long steps = 0, failed_tests = 0, failed_solves = 0, setups = 0, iterations = 0, limited = 0;
-  check(ARKStepGetNumSteps(memory(), &steps), "ARKStepGetNumSteps");
-  check(ARKStepGetNumErrTestFails(memory(), &failed_tests), "ARKStepGetNumErrTestFails");
-  check(ARKStepGetNumStepSolveFails(memory(), &failed_solves), "ARKStepGetNumStepSolveFails");
+Library::OwnCounts Arkode::own_counts() const {
+  OwnCounts own;
+  check(ARKStepGetNumSteps(memory(), &own.steps), "ARKStepGetNumSteps");
+  check(ARKStepGetNumErrTestFails(memory(), &own.failed_tests), "ARKStepGetNumErrTestFails");
+  check(ARKStepGetNumStepSolveFails(memory(), &own.failed_solves), "ARKStepGetNumStepSolveFails");
   if (has_matrix()) {
-    check(ARKStepGetNumLinSolvSetups(memory(), &setups), "ARKStepGetNumLinSolvSetups");
-    check(ARKStepGetNumNonlinSolvIters(memory(), &iterations), "ARKStepGetNumNonlinSolvIters");
+    check(ARKStepGetNumLinSolvSetups(memory(), &own.setups), "ARKStepGetNumLinSolvSetups");
+    check(ARKStepGetNumNonlinSolvIters(memory(), &own.iterations), "ARKStepGetNumNonlinSolvIters");
   }
-  check(ARKStepGetNumExpSteps(memory(), &limited), "ARKStepGetNumExpSteps");
-  set_counts({steps, failed_tests, failed_solves, setups, iterations});
-  counts().stability_limited_steps = limited;
+  check(ARKStepGetNumExpSteps(memory(), &own.limited_steps), "ARKStepGetNumExpSteps");
+  return own;
 }
 
 Cause Arkode::cause_of(int flag) const { return cause_of_arkode(flag); }

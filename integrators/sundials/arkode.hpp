@@ -4,8 +4,8 @@
 
 #include <arkode/arkode_arkstep.h>
 
+#include "integrators/sundials/library.hpp"
 #include "integrators/sundials/newton_test.hpp"
-#include "integrators/sundials/stepper.hpp"
 #include "qddot/integrators/base/renewed_bound.hpp"
 
 namespace qddot::sundials {
@@ -21,13 +21,14 @@ struct Tables {
 // ARKODE's Runge-Kutta methods on y' = (v, M^-1 f(q)). (Hindmarsh et al., ACM TOMS 31:3 (2005)
 // 363-396; Reynolds et al., ARXIV 2205.14077.) The settings made here are the same for every linear
 // solver; arkode.cpp gives their reasons. Everything else is ARKODE's default.
-class Arkode : public Stepper {
+class Arkode : public Library {
  public:
   // An implicit table is for `implicit_rate`, with Newton's matrix of `implicit_part`; an explicit
   // one is for `explicit_rate`.
-  Arkode(const Method& method, const System& system, const Options& options, const Tables& tables,
-         ARKRhsFn explicit_rate, ARKRhsFn implicit_rate, MakeMatrix make_matrix,
-         const System& implicit_part);
+  Arkode(SystemRun& run, const Tables& tables, ARKRhsFn explicit_rate, ARKRhsFn implicit_rate,
+         MakeMatrix make_matrix, const System& implicit_part);
+
+  void set_stop_time(double t_stop) override;
 
  protected:
   void* memory() const { return memory_.get(); }
@@ -35,10 +36,9 @@ class Arkode : public Stepper {
   // the system, renewed every few steps. Call in the constructor.
   void limit_steps(const System& part, double y);
   void start(const State& state) override;
-  void collect_counts() override;
+  OwnCounts own_counts() const override;
 
  private:
-  void set_stop_time(double t_stop) override;
   void set_step_size(double h) override;
   int take_step(double t_stop, double& t) override;
   Cause cause_of(int flag) const override;

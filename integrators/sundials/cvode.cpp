@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include "integrators/sundials/library.hpp"
 #include "integrators/sundials/orders.hpp"
-#include "integrators/sundials/stepper.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
@@ -19,30 +19,39 @@ namespace {
 
 using namespace sundials;
 
-class Cvode : public Stepper {
+class Cvode : public Library {
  public:
-  Cvode(const Method& method, const System& system, const Options& options, int formula,
-        MakeMatrix make_matrix)
-      : Stepper(method, system, options, make_matrix),
-        memory_(check(CVodeCreate(formula, context()))) {
-    auto* self = static_cast<Stepper*>(this);
+  Cvode(SystemRun& run, int formula, MakeMatrix make_matrix)
+      : Library(run, make_matrix), memory_(check(CVodeCreate(formula, context()))) {
+    auto* self = static_cast<Library*>(this);
     check(CVodeSetErrHandlerFn(memory(), keep_message, self), "CVodeSetErrHandlerFn");
     check(CVodeInit(memory(), right_hand_side, 0, y()), "CVodeInit");
     check(CVodeSetUserData(memory(), self), "CVodeSetUserData");
     check(CVodeSVtolerances(memory(), rtol(), atol()), "CVodeSVtolerances");
     check(CVodeSetMaxHnilWarns(memory(), -1), "CVodeSetMaxHnilWarns");
-    if (options.max_order > 0) {
-      check(CVodeSetMaxOrd(memory(), std::min(options.max_order, method.order)), "CVodeSetMaxOrd");
+    if (options().max_order > 0) {
+      check(CVodeSetMaxOrd(memory(), std::min(options().max_order, method().order)),
+            "CVodeSetMaxOrd");
     }
     if (has_matrix()) {
       check(CVodeSetLinearSolver(memory(), matrix().solver(), matrix().matrix()),
             "CVodeSetLinearSolver");
       check(CVodeSetLinSysFn(memory(), linear_system), "CVodeSetLinSysFn");
-      check(CVodeSetStabLimDet(memory(), options.stability_detection), "CVodeSetStabLimDet");
+      check(CVodeSetStabLimDet(memory(), options().stability_detection), "CVodeSetStabLimDet");
     } else {
       fixed_point_.reset(check(SUNNonlinSol_FixedPoint(y(), 0, context())));
       check(CVodeSetNonlinearSolver(memory(), fixed_point_.get()), "CVodeSetNonlinearSolver");
     }
+  }
+
+  void set_stop_time(double t_stop) override {
+    check(CVodeSetStopTime(memory(), t_stop), "CVodeSetStopTime");
+  }
+
+  void note_step() override {
+    int order = 0;
+    check(CVodeGetLastOrder(memory(), &order), "CVodeGetLastOrder");
+    orders_.note(order, counts());
   }
 
  private:
@@ -54,35 +63,24 @@ class Cvode : public Stepper {
     check(CVodeReInit(memory(), state.t, y()), "CVodeReInit");
   }
 
-  void set_stop_time(double t_stop) override {
-    check(CVodeSetStopTime(memory(), t_stop), "CVodeSetStopTime");
-  }
-
   int take_step(double t_stop, double& t) override {
     return CVode(memory(), t_stop, y(), &t, CV_ONE_STEP);
   }
 
-  void note_step() override {
-    int order = 0;
-    check(CVodeGetLastOrder(memory(), &order), "CVodeGetLastOrder");
-    orders_.note(order);
-  }
-
-  static int linear_system(double, N_Vector y, N_Vector, SUNMatrix, int jok, int* jcur,
+  static int linear_system(double t, N_Vector y, N_Vector, SUNMatrix, int jok, int* jcur,
                            double gamma, void* self, N_Vector, N_Vector, N_Vector) {
-    return static_cast<Cvode*>(static_cast<Stepper*>(self))->set_matrix(y, jok, jcur, gamma);
+    return static_cast<Cvode*>(static_cast<Library*>(self))->set_matrix(t, y, jok, jcur, gamma);
   }
 
-  void collect_counts() override {
-    long steps = 0, failed_tests = 0, failed_solves = 0, setups = 0, iterations = 0;
-    check(CVodeGetNumSteps(memory(), &steps), "CVodeGetNumSteps");
-    check(CVodeGetNumErrTestFails(memory(), &failed_tests), "CVodeGetNumErrTestFails");
-    check(CVodeGetNumStepSolveFails(memory(), &failed_solves), "CVodeGetNumStepSolveFails");
-    check(CVodeGetNumLinSolvSetups(memory(), &setups), "CVodeGetNumLinSolvSetups");
-    check(CVodeGetNumNonlinSolvIters(memory(), &iterations), "CVodeGetNumNonlinSolvIters");
-    if (!has_matrix()) setups = iterations = 0;
-    set_counts({steps, failed_tests, failed_solves, setups, iterations});
-    orders_.into(counts());
+  OwnCounts own_counts() const override {
+    OwnCounts own;
+    check(CVodeGetNumSteps(memory(), &own.steps), "CVodeGetNumSteps");
+    check(CVodeGetNumErrTestFails(memory(), &own.failed_tests), "CVodeGetNumErrTestFails");
+    check(CVodeGetNumStepSolveFails(memory(), &own.failed_solves), "CVodeGetNumStepSolveFails");
+    check(CVodeGetNumLinSolvSetups(memory(), &own.setups), "CVodeGetNumLinSolvSetups");
+    check(CVodeGetNumNonlinSolvIters(memory(), &own.iterations), "CVodeGetNumNonlinSolvIters");
+    if (!has_matrix()) own.setups = own.iterations = 0;
+    return own;
   }
 
   Cause cause_of(int flag) const override {
@@ -108,13 +106,11 @@ class Cvode : public Stepper {
 template <MakeMatrix make_matrix>
 class Bdf final : public Cvode {
  public:
-  Bdf(const Method& method, const System& system, const Options& options)
-      : Cvode(method, system, options, CV_BDF, make_matrix) {}
+  explicit Bdf(SystemRun& run) : Cvode(run, CV_BDF, make_matrix) {}
 };
 class Adams final : public Cvode {
  public:
-  Adams(const Method& method, const System& system, const Options& options)
-      : Cvode(method, system, options, CV_ADAMS, nullptr) {}
+  explicit Adams(SystemRun& run) : Cvode(run, CV_ADAMS, nullptr) {}
 };
 
 template <MakeMatrix make_matrix>
@@ -126,11 +122,11 @@ Method bdf(const char* name, const char* solver, const char* stock_of = "") {
           .family = Family::sundials,
           .knob = Knob::rtol,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = SetOf<Option>{Option::max_order, Option::stability_detection}.with(
               Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,
-          .make = create<Bdf<make_matrix>>};
+          .make = create_steps<Bdf<make_matrix>>};
 }
 
 }  // namespace
@@ -148,7 +144,7 @@ Method cvode_adams() {
           .family = Family::sundials,
           .knob = Knob::rtol,
           .takes = {Option::max_order},
-          .make = create<Adams>};
+          .make = create_steps<Adams>};
 }
 
 }  // namespace qddot::registered

@@ -40,10 +40,10 @@ class Dirk final : public Arkode {
   static constexpr Table table = tables[order - 2];
 
  public:
-  Dirk(const Method& method, const System& system, const Options& options)
-      : Arkode(method, system, options,
+  explicit Dirk(SystemRun& run)
+      : Arkode(run,
                {.implicit_table = ButcherTable(check(ARKodeButcherTable_LoadDIRK(table.id))).get()},
-               nullptr, right_hand_side, make_matrix, system) {}
+               nullptr, right_hand_side, make_matrix, run.system()) {}
 };
 
 template <int order, MakeMatrix make_matrix>
@@ -58,10 +58,10 @@ Method dirk(const std::string& name, const char* solver, const std::string& stoc
           .family = Family::sundials,
           .knob = Knob::rtol,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = SetOf<Option>{}.with(Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,
-          .make = create<Dirk<order, make_matrix>>};
+          .make = create_steps<Dirk<order, make_matrix>>};
 }
 template <int order>
 Method structured() {

@@ -45,14 +45,13 @@ ButcherTable table_of(const ExplicitTable& which) {
 template <int which>
 class Erk final : public Arkode {
  public:
-  Erk(const Method& method, const System& system, const Options& options)
-      : Erk(method, system, options, table_of(explicit_tables[which])) {}
+  explicit Erk(SystemRun& run) : Erk(run, table_of(explicit_tables[which])) {}
 
  private:
-  Erk(const Method& method, const System& system, const Options& options, ButcherTable table)
-      : Arkode(method, system, options, {.explicit_table = table.get()}, right_hand_side, nullptr,
-               nullptr, system) {
-    limit_steps(system, imaginary_stability(*table));
+  Erk(SystemRun& run, ButcherTable table)
+      : Arkode(run, {.explicit_table = table.get()}, right_hand_side, nullptr, nullptr,
+               run.system()) {
+    limit_steps(system(), imaginary_stability(*table));
   }
 };
 
@@ -68,7 +67,7 @@ Method erk() {
           .family = Family::sundials,
           .knob = Knob::rtol,
           .traits = {Trait::bounds_steps},
-          .make = create<Erk<which>>};
+          .make = create_steps<Erk<which>>};
 }
 
 }  // namespace

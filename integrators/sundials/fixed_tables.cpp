@@ -45,9 +45,9 @@ ButcherTable trbdf2_table() {
 template <ButcherTable (*make_table)()>
 class FixedTable final : public Arkode {
  public:
-  FixedTable(const Method& method, const System& system, const Options& options)
-      : Arkode(method, system, options, {.implicit_table = make_table().get()}, nullptr,
-               right_hand_side, make_structured, system) {}
+  explicit FixedTable(SystemRun& run)
+      : Arkode(run, {.implicit_table = make_table().get()}, nullptr, right_hand_side,
+               make_structured, run.system()) {}
 };
 
 template <ButcherTable (*make_table)()>
@@ -58,9 +58,9 @@ Method fixed(const char* name, int order, const char* what, const char* source) 
           .order = order,
           .family = Family::sundials,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
-          .make = create<FixedTable<make_table>>};
+          .make = create_steps<FixedTable<make_table>>};
 }
 
 }  // namespace

@@ -24,8 +24,8 @@
 #include <fmt/format.h>
 #include <ida/ida.h>
 
+#include "integrators/sundials/library.hpp"
 #include "integrators/sundials/orders.hpp"
-#include "integrators/sundials/stepper.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/equilibrium.hpp"
@@ -45,28 +45,36 @@ constexpr double most_moved_by_errors = 2;
 constexpr double most_times_as_fast = 1e8;
 
 template <MakeMatrix make_matrix>
-class Ida final : public Stepper {
+class Ida final : public Library {
  public:
-  Ida(const Method& method, const System& system, const Options& options)
-      : Stepper(method, system, options, make_matrix),
-        rate_(clone(y())),
-        memory_(check(IDACreate(context()))) {
-    auto* self = static_cast<Stepper*>(this);
+  explicit Ida(SystemRun& run)
+      : Library(run, make_matrix), rate_(clone(y())), memory_(check(IDACreate(context()))) {
+    auto* self = static_cast<Library*>(this);
     check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
     check(IDASetUserData(ida(), self), "IDASetUserData");
     check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
     check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
     check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
-    if (options.max_order > 0) {
-      check(IDASetMaxOrd(ida(), std::min(options.max_order, method.order)), "IDASetMaxOrd");
+    if (options().max_order > 0) {
+      check(IDASetMaxOrd(ida(), std::min(options().max_order, method().order)), "IDASetMaxOrd");
     }
-    if (!system.has_massless()) return;
+    if (!system().has_massless()) return;
     std::vector<bool> has_mass;
-    for (const double mass : system.mass()) has_mass.push_back(mass > 0);
-    massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), &system), has_mass);
+    for (const double mass : system().mass()) has_mass.push_back(mass > 0);
+    massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), &system()), has_mass);
     tolerated_ = clone(atol());
     check(IDAWFtolerances(ida(), weights), "IDAWFtolerances");
+  }
+
+  void set_stop_time(double t_stop) override {
+    check(IDASetStopTime(ida(), t_stop), "IDASetStopTime");
+  }
+
+  void note_step() override {
+    int order = 0;
+    check(IDAGetLastOrder(ida(), &order), "IDAGetLastOrder");
+    orders_.note(order, counts());
   }
 
  private:
@@ -78,24 +86,20 @@ class Ida final : public Stepper {
     earlier_ = {};
     is_lost_ = is_rough_ = false;
     is_consistent_ = !system().has_massless();
-    set_rate_of_masses();
+    set_rate_of_masses(state.t);
     has_finite_rate_ = Halves(rate_.get()).v.allFinite();
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
   }
 
   // Sets y' = (v, M^-1 f) of unknowns with mass.
-  void set_rate_of_masses() {
+  void set_rate_of_masses(double t) {
     const Halves at(y());
     Halves rate(rate_.get());
     rate.q = at.v;
-    rate.v = force_at(system(), at.q);
+    rate.v = force_at(system(), t, at);
     for (Index i = 0; i < system().size(); ++i) {
       rate.v[i] = system().mass()[i] > 0 ? rate.v[i] / system().mass()[i] : 0;
     }
-  }
-
-  void set_stop_time(double t_stop) override {
-    check(IDASetStopTime(ida(), t_stop), "IDASetStopTime");
   }
 
   int take_step(double t_stop, double& t) override {
@@ -143,7 +147,7 @@ class Ida final : public Stepper {
     at.q = balance.q;
     if (is_loose()) return IDA_CONV_FAIL;
     set_massless_velocities();
-    set_rate_of_masses();
+    set_rate_of_masses(t_start);
     set_massless(at.v, Vec::Zero(system().size()));
     earlier_ = own_counts();
     check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
@@ -235,7 +239,7 @@ class Ida final : public Stepper {
 
   // The weights of IDA's error norm, 1/w = rtol |y| + tolerated error.
   static int weights(N_Vector y, N_Vector w, void* user) {
-    const auto& self = *static_cast<const Ida*>(static_cast<const Stepper*>(user));
+    const auto& self = *static_cast<const Ida*>(static_cast<const Library*>(user));
     N_VAbs(y, w);
     N_VLinearSum(self.rtol(), w, 1, self.tolerated_->get(), w);
     N_VInv(w, w);
@@ -250,48 +254,40 @@ class Ida final : public Stepper {
     }
   }
 
-  void note_step() override {
-    int order = 0;
-    check(IDAGetLastOrder(ida(), &order), "IDAGetLastOrder");
-    orders_.note(order);
-  }
-
-  static int residual(double, N_Vector y, N_Vector rate, N_Vector residual, void* user) {
-    auto& self = *static_cast<Ida*>(static_cast<Stepper*>(user));
+  static int residual(double t, N_Vector y, N_Vector rate, N_Vector residual, void* user) {
+    auto& self = *static_cast<Ida*>(static_cast<Library*>(user));
     return self.guarded([&] {
       const Halves at(y), change(rate);
       Halves out(residual);
       out.q = change.q - at.v;
       if (self.massless_) self.set_massless(out.q, -at.v);
-      out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), at.q);
+      out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), t, at);
       return std::isfinite(out.v.sum());
     });
   }
 
-  static int jacobian(double, double c, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* user,
+  static int jacobian(double t, double c, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* user,
                       N_Vector, N_Vector, N_Vector) {
-    auto& self = *static_cast<Ida*>(static_cast<Stepper*>(user));
+    auto& self = *static_cast<Ida*>(static_cast<Library*>(user));
     return self.guarded([&] {
-      self.matrix().set_implicit_form(c, self.stiffness_at(Halves(y).q));
+      self.matrix().set_implicit_form(c, self.stiffness_at(t, Halves(y)));
       return true;
     });
   }
 
-  void collect_counts() override {
-    set_counts(own_counts());
-    orders_.into(counts());
-  }
-
-  OwnCounts own_counts() const {
-    OwnCounts own{};
+  OwnCounts own_counts() const override {
+    OwnCounts own;
     check(IDAGetNumSteps(ida(), &own.steps), "IDAGetNumSteps");
     check(IDAGetNumErrTestFails(ida(), &own.failed_tests), "IDAGetNumErrTestFails");
     check(IDAGetNumStepSolveFails(ida(), &own.failed_solves), "IDAGetNumStepSolveFails");
     check(IDAGetNumLinSolvSetups(ida(), &own.setups), "IDAGetNumLinSolvSetups");
     check(IDAGetNumNonlinSolvIters(ida(), &own.iterations), "IDAGetNumNonlinSolvIters");
-    return {own.steps + earlier_.steps, own.failed_tests + earlier_.failed_tests,
-            own.failed_solves + earlier_.failed_solves, own.setups + earlier_.setups,
-            own.iterations + earlier_.iterations};
+    own.steps += earlier_.steps;
+    own.failed_tests += earlier_.failed_tests;
+    own.failed_solves += earlier_.failed_solves;
+    own.setups += earlier_.setups;
+    own.iterations += earlier_.iterations;
+    return own;
   }
 
   Cause cause_of(int flag) const override {
@@ -322,7 +318,7 @@ class Ida final : public Stepper {
   bool is_consistent_ = true, has_finite_rate_ = true;
   bool is_lost_ = false;   // whether no balance is left near the massless nodes
   bool is_rough_ = false;  // whether rounding moves a massless node by more than the tolerance
-  OwnCounts earlier_{};    // before the last start of IDA, which clears its counts
+  OwnCounts earlier_;      // before the last start of IDA, which clears its counts
   std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 
@@ -336,11 +332,11 @@ Method ida(const char* name, const char* solver, const char* stock_of = "") {
           .family = Family::sundials,
           .knob = Knob::rtol,
           .traits = {Trait::implicit, Trait::accepts_massless},
-          .needs = {Need::stiffness},
+          .needs = {Need::conservative, Need::stiffness, Need::autonomous},
           .takes =
               SetOf<Option>{Option::max_order}.with(Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,
-          .make = create<Ida<make_matrix>>};
+          .make = create_steps<Ida<make_matrix>>};
 }
 
 }  // namespace

@@ -27,30 +27,30 @@ class Imex final : public Arkode {
   static constexpr AdditiveTable table = additive_tables[order - 3];
 
  public:
-  Imex(const Method& method, const System& system, const Options& options)
-      : Arkode(method, system, options,
+  explicit Imex(SystemRun& run)
+      : Arkode(run,
                {.explicit_table =
                     ButcherTable(check(ARKodeButcherTable_LoadERK(table.explicit_id))).get(),
                 .implicit_table =
                     ButcherTable(check(ARKodeButcherTable_LoadDIRK(table.implicit_id))).get()},
-               soft_rate, stiff_rate, make_structured, stiff_of(system)),
-        stiff_(stiff_of(system)),
-        soft_(soft_of(system)) {
+               soft_rate, stiff_rate, make_structured, stiff_of(run.system())),
+        stiff_(stiff_of(run.system())),
+        soft_(soft_of(run.system())) {
     limit_steps(soft_, table.limit);
   }
 
  private:
-  static int soft_rate(double, N_Vector y, N_Vector rate, void* user) {
-    auto& self = *static_cast<Imex*>(static_cast<Stepper*>(user));
+  static int soft_rate(double t, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Imex*>(static_cast<Library*>(user));
     return self.guarded([&] {
-      const bool is_finite = self.set_rate(self.soft_, y, rate);
+      const bool is_finite = self.set_rate(self.soft_, t, y, rate);
       Halves(rate).q.setZero();
       return is_finite;
     });
   }
-  static int stiff_rate(double, N_Vector y, N_Vector rate, void* user) {
-    auto& self = *static_cast<Imex*>(static_cast<Stepper*>(user));
-    return self.guarded([&] { return self.set_rate(self.stiff_, y, rate); });
+  static int stiff_rate(double t, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Imex*>(static_cast<Library*>(user));
+    return self.guarded([&] { return self.set_rate(self.stiff_, t, y, rate); });
   }
 
   const System &stiff_, &soft_;
@@ -68,9 +68,9 @@ Method imex() {
           .family = Family::sundials,
           .knob = Knob::rtol,
           .traits = {Trait::implicit},
-          .needs = {Need::stiffness, Need::split_forces},
+          .needs = {Need::conservative, Need::stiffness, Need::split_forces},
           .takes = {Option::solver},
-          .make = create<Imex<order>>};
+          .make = create_steps<Imex<order>>};
 }
 
 }  // namespace

@@ -43,16 +43,16 @@ struct FreeInner {
 using InnerStepper = std::unique_ptr<_MRIStepInnerStepper, FreeInner>;
 
 template <int order>
-class Mri final : public Stepper {
+class Mri final : public Library {
   static constexpr Pair pair = pairs[order - 3];
 
  public:
-  Mri(const Method& method, const System& system, const Options& options)
-      : Stepper(method, system, options, nullptr),
-        stiff_(stiff_of(system)),
-        soft_(soft_of(system)),
+  explicit Mri(SystemRun& run)
+      : Library(run, nullptr),
+        stiff_(stiff_of(run.system())),
+        soft_(soft_of(run.system())),
         fast_(check(ARKStepCreate(stiff_rate, nullptr, 0, y(), context()))) {
-    auto* self = static_cast<Stepper*>(this);
+    auto* self = static_cast<Library*>(this);
     const ButcherTable table(check(ARKodeButcherTable_LoadERK(pair.fast)));
     check(ARKStepSetUserData(fast_.get(), self), "ARKStepSetUserData");
     check(ARKStepSetErrHandlerFn(fast_.get(), keep_message, self), "ARKStepSetErrHandlerFn");
@@ -69,6 +69,8 @@ class Mri final : public Stepper {
     const Coupling coupling(check(MRIStepCoupling_LoadTable(pair.slow)));
     check(MRIStepSetCoupling(slow_.get(), coupling.get()), "MRIStepSetCoupling");
   }
+
+  void set_stop_time(double) override {}
 
  private:
   using Coupling = std::unique_ptr<MRIStepCouplingMem, FreeBy<MRIStepCoupling_Free>>;
@@ -87,7 +89,6 @@ class Mri final : public Stepper {
     check(ARKStepSetFixedStep(fast_.get(), fast_step_), "ARKStepSetFixedStep");
     check(MRIStepSetFixedStep(slow_.get(), h), "MRIStepSetFixedStep");
   }
-  void set_stop_time(double) override {}
 
   int take_step(double t_stop, double& t) override {
     // Small steps below the spacing of times would never end.
@@ -97,23 +98,23 @@ class Mri final : public Stepper {
   }
 
   // e = (0, M^-1 f_soft).
-  static int soft_rate(double, N_Vector y, N_Vector rate, void* user) {
-    auto& self = *static_cast<Mri*>(static_cast<Stepper*>(user));
+  static int soft_rate(double t, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Mri*>(static_cast<Library*>(user));
     return self.guarded([&] {
-      const bool is_finite = self.set_rate(self.soft_, y, rate);
+      const bool is_finite = self.set_rate(self.soft_, t, y, rate);
       Halves(rate).q.setZero();
       return is_finite;
     });
   }
-  static int stiff_rate(double, N_Vector y, N_Vector rate, void* user) {
-    auto& self = *static_cast<Mri*>(static_cast<Stepper*>(user));
-    return self.guarded([&] { return self.set_rate(self.stiff_, y, rate); });
+  static int stiff_rate(double t, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Mri*>(static_cast<Library*>(user));
+    return self.guarded([&] { return self.set_rate(self.stiff_, t, y, rate); });
   }
 
-  void collect_counts() override {
-    long steps = 0;
-    check(MRIStepGetNumSteps(slow_.get(), &steps), "MRIStepGetNumSteps");
-    set_counts({steps, 0, 0, 0, 0});
+  OwnCounts own_counts() const override {
+    OwnCounts own;
+    check(MRIStepGetNumSteps(slow_.get(), &own.steps), "MRIStepGetNumSteps");
+    return own;
   }
 
   Cause cause_of(int flag) const override { return cause_of_arkode(flag); }
@@ -142,8 +143,8 @@ Method mri() {
       .source = "Sandu, SIAM J. Numerical Analysis 57:5 (2019) 2300-2327",
       .order = order,
       .family = Family::sundials,
-      .needs = {Need::stiffness, Need::split_forces},
-      .make = create<Mri<order>>};
+      .needs = {Need::conservative, Need::stiffness, Need::split_forces},
+      .make = create_steps<Mri<order>>};
 }
 
 }  // namespace

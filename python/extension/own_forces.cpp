@@ -155,7 +155,8 @@ void OwnForces::call(const py::object& callable, const char* name, const ConstVe
   views_.take_back(std::move(view), name, "q");
 }
 
-void OwnForces::force(const ConstVec& q, MutableVec f) const {
+void OwnForces::force(const At& at, MutableVec f) const {
+  const VecView& q = at.q;
   if (const auto* c = std::get_if<CForce>(&force_)) return (*c)(q.data(), f.data(), q.size());
   inside([&] {
     call(std::get<py::object>(force_), "force", q, [&](const py::object& callable, py::object& x) {
@@ -175,7 +176,8 @@ void OwnForces::force(const ConstVec& q, MutableVec f) const {
   });
 }
 
-double OwnForces::potential(const ConstVec& q) const {
+double OwnForces::potential(const At& at) const {
+  const VecView& q = at.q;
   if (!has_potential()) throw std::logic_error("the System has no potential");
   if (const auto* c = std::get_if<CPotential>(&potential_)) return (*c)(q.data(), q.size());
   double v = 0;
@@ -189,9 +191,9 @@ double OwnForces::potential(const ConstVec& q) const {
   return v;
 }
 
-void OwnForces::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
+void OwnForces::stiffness(const At& at, SymmetricMatrix& k) const {
   inside([&] {
-    call(stiffness_, "stiffness", q, [&](const py::object& callable, py::object& x) {
+    call(stiffness_, "stiffness", at.q, [&](const py::object& callable, py::object& x) {
       const py::object result = callable(x);
       if (py::isinstance<py::tuple>(result)) {
         fill_columns(result, k);

@@ -52,10 +52,10 @@ class OwnForces final : public System {
   ~OwnForces() override;
 
   bool has_potential() const override { return potential_.index() > 0; }
-  double potential(const ConstVec& q) const override;
-  void force(const ConstVec& q, MutableVec f) const override;
+  double potential(const At& at) const override;
+  void force(const At& at, MutableVec f) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
+  void stiffness(const At& at, SymmetricMatrix& k) const override;
   bool stiffness_is_constant() const override { return is_linear_; }
 
  private:

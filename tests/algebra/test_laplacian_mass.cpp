@@ -18,7 +18,7 @@ void check_solve(const System& system, double s) {
   LaplacianMass matrix(system);
   BOOST_TEST_REQUIRE(matrix.factorize(s));
   SymmetricMatrix l = system.stiffness_pattern();
-  offered<Laplacian>(system).laplacian(l);
+  offered(system.laplacian()).assemble_laplacian(l);
   const SymmetricMatrix a = whole(system.mass(), -s, l);
   const Vec b = Vec::LinSpaced(system.size(), -1, 2).array().sin();
   Vec x = Vec::Constant(system.size(), NAN);

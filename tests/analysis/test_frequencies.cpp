@@ -97,8 +97,8 @@ double largest_ratio(int dimension) { return std::sqrt(2 * dimension * std::sqrt
 class Plain final : public System {
  public:
   Plain() : System(Vec::Ones(2)) {}
-  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
-  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
+  double potential(const At& at) const override { return 0.5 * at.q.squaredNorm(); }
+  void force(const At& at, MutableVec f) const override { f = -at.q; }
 };
 
 }  // namespace

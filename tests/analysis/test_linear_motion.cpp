@@ -53,15 +53,15 @@ class Saddle final : public System {
     k_ = Eigen::MatrixXd(k.triangularView<Eigen::Lower>()).sparseView();
     lowest_ = axes.col(0);
   }
-  double potential(const ConstVec& q) const override {
-    const Vec x = q - lowest_;
+  double potential(const At& at) const override {
+    const Vec x = at.q - lowest_;
     return -0.5 * x.dot(k_.selfadjointView<Eigen::Lower>() * x);
   }
-  void force(const ConstVec& q, MutableVec f) const override {
-    f = k_.selfadjointView<Eigen::Lower>() * (q - lowest_);
+  void force(const At& at, MutableVec f) const override {
+    f = k_.selfadjointView<Eigen::Lower>() * (at.q - lowest_);
   }
   const SymmetricMatrix& stiffness_pattern() const override { return k_; }
-  void stiffness(const ConstVec&, SymmetricMatrix& k) const override { k = k_; }
+  void stiffness(const At&, SymmetricMatrix& k) const override { k = k_; }
   bool stiffness_is_constant() const override { return true; }
 
  private:

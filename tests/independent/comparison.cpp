@@ -299,7 +299,7 @@ Comparisons compare_states(const Scene& scene, std::uint64_t seed) {
       // So near that no spring turns over and none in series goes slack.
       for (double& x : state.q) x += 1e-4 * normal(random);
       for (double& w : state.v) w = normal(random);
-      const auto* validity = qddot::capability<qddot::Validity>(reduced.system());
+      const auto* validity = reduced.system().validity();
       if (validity && !validity->is_valid_at(state.q)) break;
       compare_state(reduced, model, state, random, name + ", near the start", all);
     }

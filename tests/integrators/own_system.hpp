@@ -20,20 +20,20 @@ class Chain : public System {
   explicit Chain(Vec mass = Vec::Ones(8), double bonds = 1, double weight = 1)
       : System(std::move(mass)), bonds_(bonds), weight_(weight) {}
 
-  double potential(const ConstVec& q) const override {
+  double potential(const At& at) const override {
     double v = 0;
     for (Index b = 0; b <= nodes(); ++b) {
-      const double p = std::pow(between(q, b).norm(), -6);
+      const double p = std::pow(between(at.q, b).norm(), -6);
       v += bonds_ * (p * p - 2 * p);
     }
-    for (Index i = 0; i < nodes(); ++i) v += weight_ * gravity * q[2 * i + 1];
+    for (Index i = 0; i < nodes(); ++i) v += weight_ * gravity * at.q[2 * i + 1];
     return v;
   }
-  void force(const ConstVec& q, MutableVec f) const override {
+  void force(const At& at, MutableVec f) const override {
     f.setZero();
     for (Index i = 0; i < nodes(); ++i) f[2 * i + 1] = -weight_ * gravity;
     for (Index b = 0; b <= nodes(); ++b) {
-      const Eigen::Vector2d d = between(q, b), pull = slope(d.norm()) / d.norm() * d;
+      const Eigen::Vector2d d = between(at.q, b), pull = slope(d.norm()) / d.norm() * d;
       if (b > 0) f.segment<2>(2 * (b - 1)) += pull;
       if (b < nodes()) f.segment<2>(2 * b) -= pull;
     }
@@ -76,7 +76,7 @@ class ChainWithStiffness : public Chain {
   }
 
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
+  void stiffness(const At& at, SymmetricMatrix& k) const override {
     k.coeffs().setZero();
     const auto add = [&](Index i, Index j, const Eigen::Matrix2d& block) {
       for (int c = 0; c < 2; ++c) {
@@ -84,7 +84,7 @@ class ChainWithStiffness : public Chain {
       }
     };
     for (Index b = 0; b <= nodes(); ++b) {
-      const Eigen::Vector2d d = between(q, b);
+      const Eigen::Vector2d d = between(at.q, b);
       const double r = d.norm(), across = slope(r) / r;
       const Eigen::Matrix2d block = across * Eigen::Matrix2d::Identity() +
                                     (curvature(r) - across) / (r * r) * (d * d.transpose());
@@ -104,9 +104,10 @@ template <class Base>
 class WithGradient : public Base, public DiscreteGradient {
  public:
   using Base::Base;
-  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
-    this->force((a + b) / 2, f);
-    const Vec way = b - a;
+  const DiscreteGradient* discrete_gradient() const override { return this; }
+  void mean_force(const At& a, const At& b, MutableVec f) const override {
+    this->force(Vec((a.q + b.q) / 2), f);
+    const Vec way = b.q - a.q;
     const double square = way.squaredNorm();
     if (square == 0) return;
     f += (this->potential(a) - this->potential(b) - f.dot(way)) / square * way;
@@ -114,9 +115,9 @@ class WithGradient : public Base, public DiscreteGradient {
 };
 
 // The chain with its bonds named stiff, and its weight soft.
-class DividedChain final : public WithGradient<ChainWithStiffness>, public SplitForces {
+class DividedChain final : public WithGradient<ChainWithStiffness> {
  public:
-  const Split& split() const override { return split_; }
+  const Split* split() const override { return &split_; }
 
  private:
   Split split_{std::make_shared<ChainWithStiffness>(Vec::Ones(8), 1, 0),

@@ -64,8 +64,8 @@ struct Together {
   // The part of a state that belongs to part i.
   State part(const State& state, std::size_t i) const {
     Index at = 0;
-    for (std::size_t before = 0; before < i; ++before) at += blocks_of(*system)[before]->size();
-    const Index n = blocks_of(*system)[i]->size();
+    for (std::size_t before = 0; before < i; ++before) at += system->blocks()[before]->size();
+    const Index n = system->blocks()[i]->size();
     return {state.t, state.q.segment(at, n), state.v.segment(at, n)};
   }
 

@@ -142,11 +142,10 @@ inline std::ostream& operator<<(std::ostream& out, const Counts& c) {
 class Relay final : public System,
                     public SplitStiffness,
                     public DiscreteGradient,
-                    public Laplacian,
-                    public SplitForces {
+                    public Laplacian {
  public:
   explicit Relay(const System& system) : System(system.mass()), system_(system) {
-    const Split* parts = split_of(system);
+    const Split* parts = system.split();
     if (!parts) return;
     stiff = std::make_shared<Relay>(*parts->stiff);
     soft = std::make_shared<Relay>(*parts->soft);
@@ -160,40 +159,45 @@ class Relay final : public System,
     split_ = {stiff, soft, block, parts->stiff_unknowns};
   }
 
-  double potential(const ConstVec& q) const override { return system_.potential(q); }
-  void force(const ConstVec& q, MutableVec f) const override {
-    system_.force(q, f);
-    if (after_force) after_force(q, f);
+  double potential(const At& at) const override { return system_.potential(at); }
+  void force(const At& at, MutableVec f) const override {
+    system_.force(at, f);
+    if (after_force) after_force(at.q, f);
   }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
-    system_.stiffness(q, k);
-    if (after_stiffness) after_stiffness(q, k);
+  void stiffness(const At& at, SymmetricMatrix& k) const override {
+    system_.stiffness(at, k);
+    if (after_stiffness) after_stiffness(at.q, k);
   }
   const SymmetricMatrix& stiffness_pattern() const override { return system_.stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_.stiffness_is_constant(); }
-  bool offers(const std::type_info& type) const override {
-    if (type == typeid(SplitForces)) return stiff != nullptr;
-    if (type == typeid(SplitStiffness)) return capability<SplitStiffness>(system_);
-    if (type == typeid(DiscreteGradient)) return capability<DiscreteGradient>(system_);
-    return capability<Laplacian>(system_);
+  bool is_conservative() const override { return system_.is_conservative(); }
+  bool is_autonomous() const override { return system_.is_autonomous(); }
+  const SplitStiffness* split_stiffness() const override {
+    return system_.split_stiffness() ? this : nullptr;
   }
+  const DiscreteGradient* discrete_gradient() const override {
+    return system_.discrete_gradient() ? this : nullptr;
+  }
+  const Laplacian* laplacian() const override { return system_.laplacian() ? this : nullptr; }
+  const Split* split() const override { return stiff ? &split_ : nullptr; }
 
-  void weighted_stiffness(const ConstVec& q, double compression_weight,
+  void weighted_stiffness(const At& at, double compression_weight,
                           SymmetricMatrix& k) const override {
-    offered<SplitStiffness>(system_).weighted_stiffness(q, compression_weight, k);
-    if (after_stiffness) after_stiffness(q, k);
+    offered(system_.split_stiffness()).weighted_stiffness(at, compression_weight, k);
+    if (after_stiffness) after_stiffness(at.q, k);
   }
-  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
-    offered<SplitStiffness>(system_).material_stiffness(q, k);
-    if (after_stiffness) after_stiffness(q, k);
+  void material_stiffness(const At& at, SymmetricMatrix& k) const override {
+    offered(system_.split_stiffness()).material_stiffness(at, k);
+    if (after_stiffness) after_stiffness(at.q, k);
   }
-  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
-    offered<DiscreteGradient>(system_).discrete_gradient(a, b, f);
-    if (after_force) after_force(b, f);
+  void mean_force(const At& a, const At& b, MutableVec f) const override {
+    offered(system_.discrete_gradient()).mean_force(a, b, f);
+    if (after_force) after_force(b.q, f);
   }
-  void laplacian(SymmetricMatrix& l) const override { offered<Laplacian>(system_).laplacian(l); }
-  bool bounds_stiffness() const override { return offered<Laplacian>(system_).bounds_stiffness(); }
-  const Split& split() const override { return split_; }
+  void assemble_laplacian(SymmetricMatrix& l) const override {
+    offered(system_.laplacian()).assemble_laplacian(l);
+  }
+  bool bounds_stiffness() const override { return offered(system_.laplacian()).bounds_stiffness(); }
 
   // All relays that evaluations may pass by.
   std::vector<Relay*> all() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "tests/integrators/runs.hpp"
@@ -15,16 +14,12 @@ struct WithTable {
   const Table& table;
 };
 
-// The registry's methods whose integrators are of the class Stepper, with their coefficients.
-template <class Stepper>
-auto methods_with_tables() {
-  using Table = std::remove_cvref_t<decltype(std::declval<const Stepper&>().table())>;
-  const auto system = make_mass_spring(Oscillator{}.problem().network);
+// The registry's methods with such coefficients, a member of Method.
+template <class Table>
+std::vector<WithTable<Table>> methods_with_tables(const Table* Method::*coefficients) {
   std::vector<WithTable<Table>> list;
   for (const Method& method : methods()) {
-    const auto integrator = make_integrator(method, *system, options_of(method, 1e-3, 1e-3));
-    if (const auto* stepper = dynamic_cast<const Stepper*>(integrator.get()))
-      list.push_back({method.name, stepper->table()});
+    if (const Table* table = method.*coefficients) list.push_back({method.name, *table});
   }
   BOOST_REQUIRE(!list.empty());
   return list;

@@ -12,7 +12,7 @@ using namespace qddot;
 namespace {
 
 const std::vector<WithTable<NystromPair>>& pairs() {
-  static const auto list = methods_with_tables<Nystrom>();
+  static const auto list = methods_with_tables(&Method::nystrom_pair);
   return list;
 }
 

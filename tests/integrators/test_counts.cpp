@@ -35,7 +35,7 @@ struct Cost {
 std::vector<Cost> explicit_methods() {
   std::vector<Cost> list = {{"explicit_euler", 1, 0}, {"symplectic_euler", 1, 0}, {"rk4", 4, 0}};
   // The last force of a step is the first of the next if a kick is first.
-  for (const auto& [name, table] : methods_with_tables<KickDrift>()) {
+  for (const auto& [name, table] : methods_with_tables(&Method::splitting)) {
     const bool kicks_first = table.kicks.size() > table.drifts.size();
     list.push_back({name, std::ssize(kicks_first ? table.drifts : table.kicks), kicks_first});
   }

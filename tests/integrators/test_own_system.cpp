@@ -94,7 +94,7 @@ template <class Base>
 class WithoutPotential final : public Base {
  public:
   bool has_potential() const override { return false; }
-  double potential(const ConstVec&) const override { throw std::logic_error("V was asked for"); }
+  double potential(const At&) const override { throw std::logic_error("V was asked for"); }
 };
 
 BOOST_AUTO_TEST_CASE(with_f_alone_it_is_run_by_the_same_methods_and_its_growth_is_not_known) {

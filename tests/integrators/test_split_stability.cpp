@@ -93,9 +93,9 @@ BOOST_AUTO_TEST_CASE(steps_are_held_to_the_limit_of_the_soft_springs) {
   // to 1e-12.
   const Vec end = run(method_named("kahan_li8"), system, start, until, {.step_size = 1e-5}).state.q;
   const double motion = distance(end, start.q);
-  BOOST_TEST(3 * split_of(system)->stiff->stiffness_pattern().nonZeros() <
+  BOOST_TEST(3 * system.split()->stiff->stiffness_pattern().nonZeros() <
              system.stiffness_pattern().nonZeros());
-  const double soft_bound = frequency_bound(*split_of(system)->soft, start.q);
+  const double soft_bound = frequency_bound(*system.split()->soft, start.q);
   for (const AdditiveTable& table : additive_tables) {
     const double least = until * soft_bound / table.limit;
     for (const double rtol : {1e-2, 1e-3}) {

@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(soft_forces_are_evaluated_a_few_times_a_step_and_stiff_ones
   for (const double ratio : {1.0, 100.0, 1e4}) {
     const Problem p = railed_hammock(ratio);
     const auto system = make_mass_spring(p.network);
-    const Split& split = *split_of(*system);
+    const Split& split = *system->split();
     const double m = std::ceil(frequency_bound(*split.stiff, p.initial.q) /
                                frequency_bound(*split.soft, p.initial.q));
     // Stages of the slow and of the fast table.

@@ -13,7 +13,7 @@ using namespace qddot;
 namespace {
 
 const std::vector<WithTable<Splitting>>& all() {
-  static const auto list = methods_with_tables<KickDrift>();
+  static const auto list = methods_with_tables(&Method::splitting);
   return list;
 }
 

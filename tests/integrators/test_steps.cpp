@@ -61,7 +61,7 @@ State kicks_and_drifts(const Splitting& table, const System& system, State s, do
 // Linearly implicit steps of these parts of a step, by a dense solve over all unknowns.
 State linear_midpoint(const std::vector<double>& parts, const System& system, State s,
                       double whole) {
-  const System& stiff = split_of(system) ? *split_of(system)->stiff : system;
+  const System& stiff = system.split() ? *system.split()->stiff : system;
   for (const double part : parts) {
     const double size = part * whole;
     const Vec x = s.q + size / 2 * s.v;
@@ -100,7 +100,7 @@ State by_table(const Table& table, const System& system, const State& s, double 
 }
 
 using Step = std::function<State(const System&, const State&, double size)>;
-struct Formula {
+struct Expected {
   std::string method;
   Step step;
   double most = rounding;  // off
@@ -108,7 +108,7 @@ struct Formula {
 
 const Table midpoint{MatrixXd{{0.5}}, Vec{{1.0}}};
 
-std::vector<Formula> formulas() {
+std::vector<Expected> expected_steps() {
   const double p = 1 / (4 - std::cbrt(4));
   const double g = 1 - 1 / std::sqrt(2.0), w = std::sqrt(2.0) / 4;
   const Table forward{MatrixXd{{0.0}}, Vec{{1.0}}}, backward{MatrixXd{{1.0}}, Vec{{1.0}}},
@@ -117,13 +117,13 @@ std::vector<Formula> formulas() {
       trapezoidal{MatrixXd{{0, 0}, {0.5, 0.5}}, Vec{{0.5, 0.5}}},
       sdirk2{MatrixXd{{g, 0}, {1 - g, g}}, Vec{{1 - g, g}}},
       trbdf2{MatrixXd{{0, 0, 0}, {g, g, 0}, {w, w, g}}, Vec{{w, w, g}}};
-  std::vector<Formula> list = {
+  std::vector<Expected> list = {
       {"symplectic_euler", std::bind_front(kicks_and_drifts, Splitting{1, {1}, {1}})},
       {"semi_implicit_euler", semi_implicit_euler},
       {"linear_midpoint", std::bind_front(linear_midpoint, std::vector<double>{1})},
       {"linear_midpoint4",
        std::bind_front(linear_midpoint, std::vector<double>{p, p, 1 - 4 * p, p, p}), 5 * rounding}};
-  for (const auto& [name, table] : methods_with_tables<KickDrift>()) {
+  for (const auto& [name, table] : methods_with_tables(&Method::splitting)) {
     list.push_back({name, std::bind_front(kicks_and_drifts, table),
                     static_cast<double>(table.kicks.size()) * rounding});
   }
@@ -190,7 +190,7 @@ Vec run_oscillator(const std::string& method, double hw, double steps, double rh
 
 // The difference between the method and its formula after some steps, relative to the start, or to
 // the end where the motion grows.
-double defect(const Formula& formula, double hw, int steps, double longer = 1) {
+double defect(const Expected& formula, double hw, int steps, double longer = 1) {
   const double size = hw / oscillator.omega();
   const auto system = make_mass_spring(oscillator.problem().network);
   State s = oscillator.problem().initial;
@@ -236,7 +236,7 @@ Vec bdf2_by_hand(double hw, int steps, double last_part) {
 
 BOOST_AUTO_TEST_CASE(a_step_is_the_formula_of_its_method) {
   const std::vector<Problem> all = networks();
-  for (const auto& [method, formula, most] : formulas()) {
+  for (const auto& [method, formula, most] : expected_steps()) {
     double largest = 0;
     for (const Problem& p : all) {
       const State expected = formula(*make_mass_spring(p.network), p.initial, h);
@@ -264,10 +264,10 @@ BOOST_AUTO_TEST_CASE(a_step_solves_the_method_s_equations_and_no_others) {
 }
 
 BOOST_AUTO_TEST_CASE(steps_on_the_oscillator_are_those_of_the_formula_at_any_length) {
-  std::vector<Formula> list = formulas();
+  std::vector<Expected> list = expected_steps();
   // The gradient of a parabola is that of its middle.
   list.push_back({"discrete_gradient", std::bind_front(by_table, midpoint)});
-  for (const Formula& formula : list) {
+  for (const Expected& formula : list) {
     const std::string& method = formula.method;
     for (const double hw : any_hw) {
       if (hw > 1 && !method_named(method).is(Trait::implicit)) continue;

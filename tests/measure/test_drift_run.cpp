@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/measurement.hpp"
 #include "qddot/measure/trend/drift_run.hpp"
@@ -15,12 +15,11 @@ namespace {
 // Verlet's method with the positions' h^2 larger by d = 1/1000:
 //   q_{n+1} = q_n + h v_n + (1 + d) h^2/2 a_n,   v_{n+1} = v_n + h/2 (a_n + a_{n+1}).
 // The matrix of a step on q'' = -w^2 q has the determinant 1 - d h^2 w^2/2, by which energy falls.
-class LeaningVerlet final : public FixedStep {
+class LeaningVerlet final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     Vec a(now.q.size()), b(now.q.size());
     force(now.q, a);
     a = a.cwiseQuotient(system().mass());
@@ -158,8 +157,8 @@ BOOST_AUTO_TEST_CASE(without_k_the_trend_is_that_of_the_energy) {
   class Pull final : public System {
    public:
     Pull() : System(Vec::Ones(1)) {}
-    double potential(const ConstVec& q) const override { return 50 * q.squaredNorm(); }
-    void force(const ConstVec& q, MutableVec f) const override { f = -100 * q; }
+    double potential(const At& at) const override { return 50 * at.q.squaredNorm(); }
+    void force(const At& at, MutableVec f) const override { f = -100 * at.q; }
   };
   const auto own = std::make_shared<const ReducedScene>(std::make_shared<const Pull>(),
                                                         State{0, Vec::Ones(1), Vec::Zero(1)}, 1);

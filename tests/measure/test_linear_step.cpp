@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/measure/stability/linear_limit.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
@@ -16,12 +16,11 @@ namespace {
 using Complex = std::complex<double>;
 
 // Velocity Verlet with its second kick longer by a thousandth, a fault that the tests have to see.
-class FaultyVerlet final : public FixedStep {
+class FaultyVerlet final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     force(now.q, f_);
     next.v = now.v + h / 2 * f_.cwiseQuotient(system().mass());
     next.q = now.q + h * next.v;
@@ -72,15 +71,14 @@ const Rational rationals[] = {
     {{"rk4"}, [](Complex z) { return 1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.))); }}};
 
 // Heun's method, order 2: |R(i z)|^2 = 1 + z^4/4, which grows at every h.
-class Heun final : public FixedStep {
+class Heun final : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
 
- private:
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     Vec a(now.q.size()), b(now.q.size());
     force(now.q, a);
-    force(now.q + h * now.v, b);
+    force(Vec(now.q + h * now.v), b);
     next.q = now.q + h * now.v + h * h / 2 * a;
     next.v = now.v + h / 2 * (a + b);
     return Outcome::reached_end;

@@ -1,6 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/front_again.hpp"
 #include "qddot/measure/speed/measurement.hpp"
@@ -26,45 +26,49 @@ const Reference& reference() {
 }
 
 // Stays where it is. Its runs are counted.
-class Still : public FixedStep {
+class Still : public Formula {
  public:
-  using FixedStep::FixedStep;
+  using Formula::Formula;
   static inline int runs = 0;
 
- protected:
-  void start(const State&) override { ++runs; }
-  Outcome step(const State& now, double, State& next) override {
-    next = now;
+  void begin(const State& state, State& x) {
+    x = state;
+    ++runs;
+  }
+  Outcome step(const State& now, double, State& next) {
+    next.q = now.q;
+    next.v = now.v;
     return Outcome::reached_end;
   }
 };
 
 // A run takes more than a tenth of a second.
 class Slow final : public Still {
+ public:
   using Still::Still;
-  void start(const State& state) override {
-    Still::start(state);
+  void begin(const State& state, State& x) {
+    Still::begin(state, x);
     MadeClock::pass(0.101);
   }
 };
 
 // A run takes 0.2 s, times the next of `left` while there are any.
 class Uneven final : public Still {
+ public:
   using Still::Still;
-  void start(const State& state) override {
-    Still::start(state);
+  void begin(const State& state, State& x) {
+    Still::begin(state, x);
     MadeClock::pass(left.empty() ? 0.2 : 0.2 * left.front());
     if (!left.empty()) left.erase(left.begin());
   }
-
- public:
   static inline std::vector<double> left{};
 };
 
 // All runs but the first one fail.
 class Once final : public Still {
+ public:
   using Still::Still;
-  Outcome step(const State& now, double h, State& next) override {
+  Outcome step(const State& now, double h, State& next) {
     Still::step(now, h, next);
     return runs == 1 ? Outcome::reached_end : Outcome::newton_failed;
   }

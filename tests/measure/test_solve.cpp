@@ -39,14 +39,14 @@ class TwoHollows final : public System {
     pattern_.makeCompressed();
   }
 
-  double potential(const ConstVec& q) const override {
-    const double square = q[0] * q[0];
+  double potential(const At& at) const override {
+    const double square = at.q[0] * at.q[0];
     return square * (square / 4 - 0.5);
   }
-  void force(const ConstVec& q, MutableVec f) const override { f[0] = q[0] * (1 - q[0] * q[0]); }
+  void force(const At& at, MutableVec f) const override { f[0] = at.q[0] * (1 - at.q[0] * at.q[0]); }
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
-    k.coeffs()[0] = 1 - 3 * q[0] * q[0];
+  void stiffness(const At& at, SymmetricMatrix& k) const override {
+    k.coeffs()[0] = 1 - 3 * at.q[0] * at.q[0];
   }
 
  private:

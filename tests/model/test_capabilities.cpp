@@ -20,22 +20,22 @@ struct Offers {
 };
 Offers offers_of(const System& s) {
   return {s.has_stiffness(),
-          capability<SplitStiffness>(s) != nullptr,
-          capability<DiscreteGradient>(s) != nullptr,
-          capability<Laplacian>(s) != nullptr,
-          capability<PiecewiseLinear>(s) != nullptr,
-          capability<Validity>(s) != nullptr,
-          capability<Kinks>(s) != nullptr,
-          capability<Blocks>(s) != nullptr,
-          capability<SplitForces>(s) != nullptr};
+          s.split_stiffness() != nullptr,
+          s.discrete_gradient() != nullptr,
+          s.laplacian() != nullptr,
+          s.pieces() != nullptr,
+          s.validity() != nullptr,
+          s.kinks() != nullptr,
+          !s.blocks().empty(),
+          s.split() != nullptr};
 }
 
 // A mass on a spring of V = q^2/2, by V and f alone.
 class Plain : public System {
  public:
   Plain() : System(Vec::Ones(1)) {}
-  double potential(const ConstVec& q) const override { return 0.5 * q.squaredNorm(); }
-  void force(const ConstVec& q, MutableVec f) const override { f = -q; }
+  double potential(const At& at) const override { return 0.5 * at.q.squaredNorm(); }
+  void force(const At& at, MutableVec f) const override { f = -at.q; }
 };
 
 // The same with the capabilities that it is to offer; a place that it reports is at q = 1.
@@ -45,39 +45,39 @@ class Offering final : public Plain,
                        public Laplacian,
                        public PiecewiseLinear,
                        public Validity,
-                       public Kinks,
-                       public SplitForces {
+                       public Kinks {
  public:
   explicit Offering(const Offers& offers) : offers_(offers) {
     if (!offers.stiffness) return;
     pattern_.resize(1, 1);
     pattern_.insert(0, 0) = 0;
   }
-  bool offers(const std::type_info& type) const override {
-    return (type == typeid(SplitStiffness) && offers_.split_stiffness) ||
-           (type == typeid(DiscreteGradient) && offers_.discrete_gradient) ||
-           (type == typeid(Laplacian) && offers_.laplacian) ||
-           (type == typeid(PiecewiseLinear) && offers_.pieces) ||
-           (type == typeid(Validity) && offers_.validity) ||
-           (type == typeid(Kinks) && offers_.kinks) ||
-           (type == typeid(SplitForces) && offers_.split);
+  const SplitStiffness* split_stiffness() const override {
+    return offers_.split_stiffness ? this : nullptr;
   }
+  const DiscreteGradient* discrete_gradient() const override {
+    return offers_.discrete_gradient ? this : nullptr;
+  }
+  const Laplacian* laplacian() const override { return offers_.laplacian ? this : nullptr; }
+  const PiecewiseLinear* pieces() const override { return offers_.pieces ? this : nullptr; }
+  const Validity* validity() const override { return offers_.validity ? this : nullptr; }
+  const Kinks* kinks() const override { return offers_.kinks ? this : nullptr; }
+  const Split* split() const override { return offers_.split ? &split_ : nullptr; }
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
-  void stiffness(const ConstVec&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
-  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override { stiffness(q, k); }
-  void weighted_stiffness(const ConstVec& q, double, SymmetricMatrix& k) const override {
-    stiffness(q, k);
+  void stiffness(const At&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
+  void material_stiffness(const At& at, SymmetricMatrix& k) const override { stiffness(at, k); }
+  void weighted_stiffness(const At& at, double, SymmetricMatrix& k) const override {
+    stiffness(at, k);
   }
-  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
-    f = -(a + b) / 2;
+  void mean_force(const At& a, const At& b, MutableVec f) const override {
+    f = -(a.q + b.q) / 2;
   }
-  void laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
+  void assemble_laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
   bool bounds_stiffness() const override { return true; }
   bool is_linear_at(const ConstVec& q) const override { return q[0] < 1; }
   bool is_valid_at(const ConstVec& q) const override { return q[0] < 1; }
-  Index kinks() const override { return 1; }
+  Index kink_count() const override { return 1; }
   void kink_lengths(const ConstVec& q, MutableVec lengths) const override { lengths[0] = q[0] - 1; }
-  const Split& split() const override { return split_; }
 
  private:
   Offers offers_;
@@ -118,11 +118,11 @@ BOOST_AUTO_TEST_CASE(a_system_of_v_and_f_alone_has_none) {
   const Plain plain;
   BOOST_TEST((offers_of(plain) == Offers{}));
   BOOST_TEST(!plain.stiffness_is_constant());
-  BOOST_TEST(blocks_of(plain).empty());
-  BOOST_TEST(!split_of(plain));
+  BOOST_TEST(plain.blocks().empty());
+  BOOST_TEST(!plain.split());
   SymmetricMatrix k = plain.stiffness_pattern();
   BOOST_TEST(k.size() == 0);
-  BOOST_CHECK_THROW(plain.stiffness(Vec::Zero(1), k), std::logic_error);
+  BOOST_CHECK_THROW(plain.stiffness(Vec(Vec::Zero(1)), k), std::logic_error);
 }
 
 BOOST_AUTO_TEST_CASE(each_is_found_where_an_object_offers_it_and_nowhere_else) {
@@ -212,14 +212,14 @@ BOOST_AUTO_TEST_CASE(exceptions_of_one_block_are_those_of_the_whole) {
     blocks.push_back(std::make_unique<Offering>(offers));
   const BlockDiagonalSystem system(std::move(blocks));
   const Vec inside{{5, 0, 3}}, outside{{0, 2, 3}};
-  const Validity& validity = offered<Validity>(system);
+  const Validity& validity = *system.validity();
   BOOST_TEST(validity.is_valid_at(inside));
   BOOST_TEST(!validity.is_valid_at(outside));
   const Vec v = Vec::Zero(3);
   BOOST_TEST(!validity.end_of_validity({1, outside, v}, {2, inside, v}));
   BOOST_TEST(validity.end_of_validity({1, inside, v}, {2, outside, v}).value() == 2);
-  const Kinks& kinks = offered<Kinks>(system);
-  BOOST_TEST_REQUIRE(kinks.kinks() == 1);
+  const Kinks& kinks = *system.kinks();
+  BOOST_TEST_REQUIRE(kinks.kink_count() == 1);
   Vec lengths(1);
   kinks.kink_lengths(inside, lengths);
   BOOST_TEST(lengths[0] == 2);

@@ -57,11 +57,11 @@ BOOST_AUTO_TEST_CASE(columns_without_a_common_row_share_a_force) {
   class Chain final : public System {
    public:
     explicit Chain(Index n) : System(Vec::Ones(n)) {}
-    double potential(const ConstVec& q) const override {
-      return 0.5 * (q.tail(size() - 1) - q.head(size() - 1)).squaredNorm();
+    double potential(const At& at) const override {
+      return 0.5 * (at.q.tail(size() - 1) - at.q.head(size() - 1)).squaredNorm();
     }
-    void force(const ConstVec& q, MutableVec f) const override {
-      const Vec pull = q.tail(size() - 1) - q.head(size() - 1);
+    void force(const At& at, MutableVec f) const override {
+      const Vec pull = at.q.tail(size() - 1) - at.q.head(size() - 1);
       f.setZero();
       f.head(size() - 1) += pull;
       f.tail(size() - 1) -= pull;

@@ -63,22 +63,22 @@ BOOST_AUTO_TEST_CASE(each_is_the_network_of_its_springs_alone_with_the_pattern_o
   for_split_networks([&](const Network& network, const Vec& q) {
     const auto whole = make_mass_spring(network);
     for (const bool stiff : {true, false}) {
-      const System& half = stiff ? *split_of(*whole)->stiff : *split_of(*whole)->soft;
+      const System& half = stiff ? *whole->split()->stiff : *whole->split()->soft;
       const auto expected = alone(network, stiff);
       BOOST_TEST(same_pattern(half, *expected));
       BOOST_TEST(half.potential(q) == expected->potential(q));
       BOOST_TEST((force_at(half, q) == force_at(*expected, q)));
       BOOST_TEST((dense(stiffness_at(half, q)) == dense(stiffness_at(*expected, q))));
       BOOST_TEST(half.stiffness_is_constant() == expected->stiffness_is_constant());
-      BOOST_TEST(!split_of(half));
+      BOOST_TEST(!half.split());
     }
-    fewer += !same_pattern(*split_of(*whole)->stiff, *whole);
+    fewer += !same_pattern(*whole->split()->stiff, *whole);
     ++all;
     // Nothing else changes.
     Network unsplit = network;
     unsplit.offers_split = false;
     const auto without = make_mass_spring(unsplit);
-    BOOST_TEST(!split_of(*without));
+    BOOST_TEST(!without->split());
     BOOST_TEST(whole->potential(q) == without->potential(q));
     BOOST_TEST((force_at(*whole, q) == force_at(*without, q)));
     BOOST_TEST((dense(stiffness_at(*whole, q)) == dense(stiffness_at(*without, q))));
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(the_stiff_block_is_the_stiff_one_over_the_unknowns_that_it_
   int smaller = 0;
   for_split_networks([&](const Network& network, const Vec& q) {
     const auto whole = make_mass_spring(network);
-    const auto& [stiff, soft, block, unknowns] = *split_of(*whole);
+    const auto& [stiff, soft, block, unknowns] = *whole->split();
     BOOST_TEST_REQUIRE(block->size() == std::ssize(unknowns));
     BOOST_TEST(std::ranges::is_sorted(unknowns));
     BOOST_TEST((block->mass() == whole->mass()(unknowns)));
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(each_says_of_its_own_springs_whether_k_is_constant_and_the_
                      {1, {0, 0, 0}, {10, 1}, Holds::in_tension, false}};
   network.offers_split = true;
   const auto whole = make_mass_spring(network);
-  const Split& split = *split_of(*whole);
+  const Split& split = *whole->split();
   for (const auto& [q, stiff_holds, soft_holds] : {std::tuple(Vec{{1.5, 1.5}}, true, true),
                                                    {Vec{{0.5, 1.5}}, false, true},
                                                    {Vec{{1.5, 0.5}}, true, false}}) {
@@ -132,10 +132,10 @@ BOOST_AUTO_TEST_CASE(each_says_of_its_own_springs_whether_k_is_constant_and_the_
   network.anchors.pop_back();
   const auto soft_linear = make_mass_spring(network);
   BOOST_TEST(!soft_linear->stiffness_is_constant());
-  BOOST_TEST(!split_of(*soft_linear)->stiff->stiffness_is_constant());
-  BOOST_TEST(split_of(*soft_linear)->soft->stiffness_is_constant());
+  BOOST_TEST(!soft_linear->split()->stiff->stiffness_is_constant());
+  BOOST_TEST(soft_linear->split()->soft->stiffness_is_constant());
   network.uses_constant_stiffness = false;
-  BOOST_TEST(!split_of(*make_mass_spring(network))->soft->stiffness_is_constant());
+  BOOST_TEST(!make_mass_spring(network)->split()->soft->stiffness_is_constant());
 }
 
 BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(what_is_held_is_held_in_both) {
     std::vector<bool> is_held(static_cast<std::size_t>(q.size()));
     for (std::size_t i = 0; i < is_held.size(); ++i) is_held[i] = random() % 3 == 0;
     const ConstrainedSystem held(make_mass_spring(network), is_held);
-    const Split* split = split_of(held);
+    const Split* split = held.split();
     BOOST_TEST_REQUIRE(split);
     BOOST_TEST(adds_up(held, *split->stiff, *split->soft, q));
     const Vec stiff = force_at(*split->stiff, q), soft = force_at(*split->soft, q);

@@ -17,7 +17,7 @@ constexpr double rounding = 60 * eps * 1e4;
 
 MatrixXd weighted_at(const System& system, const Vec& q, double compression) {
   SymmetricMatrix k = system.stiffness_pattern();
-  offered<SplitStiffness>(system).weighted_stiffness(q, compression, k);
+  offered(system.split_stiffness()).weighted_stiffness(q, compression, k);
   return dense(k);
 }
 

@@ -27,7 +27,7 @@ template <class Write>
 Vec entries(const System& system, const Write& write) {
   SymmetricMatrix k = system.stiffness_pattern();
   k.coeffs().setConstant(NAN);  // every one must be written
-  write(offered<SplitStiffness>(system), k);
+  write(offered(system.split_stiffness()), k);
   return k.coeffs();
 }
 Vec weighted(const System& system, const Vec& q, double compression) {

@@ -21,7 +21,7 @@ struct Said {
 
   Said(const System& system, const Vec& q) : v(system.potential(q)) {
     vectors = {force_at(system, q), mean_force_between(system, q, 1.1 * q)};
-    const auto& parts = offered<SplitStiffness>(system);
+    const auto& parts = offered(system.split_stiffness());
     const auto add = [&](const auto& write) {
       SymmetricMatrix k = system.stiffness_pattern();
       k.coeffs().setConstant(NAN);  // whatever was in it before
@@ -31,7 +31,7 @@ struct Said {
     add([&](SymmetricMatrix& k) { system.stiffness(q, k); });
     add([&](SymmetricMatrix& k) { parts.weighted_stiffness(q, 0.5, k); });
     add([&](SymmetricMatrix& k) { parts.material_stiffness(q, k); });
-    add([&](SymmetricMatrix& k) { offered<Laplacian>(system).laplacian(k); });
+    add([&](SymmetricMatrix& k) { offered(system.laplacian()).assemble_laplacian(k); });
   }
 };
 

@@ -18,7 +18,7 @@ namespace {
 // A system, or each of its parts, with its own unknowns of q.
 template <class Action>
 void for_each_whole(const System& system, const Vec& q, const Action& action) {
-  const auto blocks = blocks_of(system);
+  const auto blocks = system.blocks();
   if (blocks.empty()) return action(system, q);
   Index at = 0;
   for (const auto& block : blocks) {
@@ -31,8 +31,8 @@ void for_each_whole(const System& system, const Vec& q, const Action& action) {
 double stiff_potential(const ReducedScene& reduced, const Vec& q) {
   double v = 0;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {
-    BOOST_TEST_REQUIRE(split_of(part));
-    v += split_of(part)->stiff->potential(own);
+    BOOST_TEST_REQUIRE(part.split());
+    v += part.split()->stiff->potential(own);
   });
   return v;
 }
@@ -54,8 +54,8 @@ double stiff_potential_by_hand(const Scene& scene, const std::vector<Node>& node
 bool adds_up(const ReducedScene& reduced, const Vec& q) {
   bool good = true;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {
-    BOOST_TEST_REQUIRE(split_of(part));
-    const System &stiff = *split_of(part)->stiff, &soft = *split_of(part)->soft;
+    BOOST_TEST_REQUIRE(part.split());
+    const System &stiff = *part.split()->stiff, &soft = *part.split()->soft;
     const auto close = [&](const auto& one, const auto& two, const auto& all) {
       const double scale = one.cwiseAbs().sum() + two.cwiseAbs().sum() + all.cwiseAbs().sum();
       good = good && distance(one + two, all) <= 100 * eps * scale;
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(naming_stiff_springs_changes_no_bit_of_anything_else) {
       BOOST_TEST(a.system().stiffness_is_constant() == b.system().stiffness_is_constant());
       BOOST_TEST(a.findings().size() == b.findings().size());
       for_each_whole(b.system(), q,
-                     [](const System& part, const Vec&) { BOOST_TEST(!split_of(part)); });
+                     [](const System& part, const Vec&) { BOOST_TEST(!part.split()); });
     }
   }
 }
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(the_stiff_pattern_of_a_frame_has_no_more_than_its_border) {
   const Scene scene = draw("framed_cloth", {{"nodes", 6}});
   const auto entries = [&](const Reductions& reductions) {
     const ReducedScene reduced(scene, reductions);
-    return split_of(reduced.system())->stiff->stiffness_pattern().nonZeros();
+    return reduced.system().split()->stiff->stiffness_pattern().nonZeros();
   };
   // Blocks of 6 entries for the diagonal, and of 9 for each border spring between free nodes. A
   // half has 17 nodes; its spring across the mirror is a node's own.
@@ -230,13 +230,13 @@ BOOST_AUTO_TEST_CASE(on_a_line_stiff_springs_keep_their_rest_length) {
   const ReducedScene reduced(scene);
   BOOST_TEST(reduced.parts().front().is_straightened());
   const Vec& q = reduced.initial().q;
-  const System& stiff = *split_of(reduced.system())->stiff;
+  const System& stiff = *reduced.system().split()->stiff;
   BOOST_TEST(stiff.stiffness_is_constant());
   BOOST_TEST(adds_up(reduced, q));
   // tau = -100, 1000 and -200 N; each term k l of up to 4e4 is rounded.
   BOOST_TEST(distance(force_at(stiff, q), Vec{{100 + 1000, -1000, -200}}) < 10 * eps * 4e4);
   const Vec weight_and_soft{{2 * 2., 3 * 2. - 40, 4 * 2. + 40}};
-  BOOST_TEST(distance(force_at(*split_of(reduced.system())->soft, q), weight_and_soft) <
+  BOOST_TEST(distance(force_at(*reduced.system().split()->soft, q), weight_and_soft) <
              10 * eps * 4e4);
 }
 
@@ -250,12 +250,12 @@ BOOST_AUTO_TEST_CASE(every_part_offers_a_split_whatever_springs_it_has) {
     scene.springs.push_back({{first, first + 1}, {k, 0.9}});
   }
   const ReducedScene reduced(scene);
-  BOOST_TEST_REQUIRE(blocks_of(reduced.system()).size() == 2u);
-  for (const auto& block : blocks_of(reduced.system())) BOOST_TEST_REQUIRE(split_of(*block));
+  BOOST_TEST_REQUIRE(reduced.system().blocks().size() == 2u);
+  for (const auto& block : reduced.system().blocks()) BOOST_TEST_REQUIRE(block->split());
   BOOST_TEST(stiff_potential(reduced, reduced.initial().q) == 250 * 0.1 * 0.1,
              boost::test_tools::tolerance(100 * eps));
   for (Node& node : scene.nodes) node.pinned = true;
-  BOOST_TEST(split_of(ReducedScene(scene).system()));
+  BOOST_TEST(ReducedScene(scene).system().split());
   BOOST_TEST(split_of(ReducedScene(scene, Reductions::only({})).system()));
 }
 

@@ -50,7 +50,7 @@ bool same(const SymmetricMatrix& a, const SymmetricMatrix& b) {
 
 LaplacianMass::LaplacianMass(const System& system) {
   SymmetricMatrix l = system.stiffness_pattern();
-  capability<Laplacian>(system)->laplacian(l);
+  system.laplacian()->assemble_laplacian(l);
   std::vector<Index> place(static_cast<std::size_t>(l.cols()));
   for (std::vector<Index>& unknowns : joined_unknowns(l)) {
     const Index n = std::ssize(unknowns);

@@ -33,10 +33,10 @@ constexpr Index largest_dense = 1000;
 // it, but the rounding of its length is not.
 Vec stiffness_of_rows(const System& system, const SymmetricMatrix& k) {
   const Vec rows = row_sums(k);
-  const auto* laplacian = capability<Laplacian>(system);
+  const auto* laplacian = system.laplacian();
   if (laplacian && laplacian->bounds_stiffness()) {
     SymmetricMatrix l = system.stiffness_pattern();
-    laplacian->laplacian(l);
+    laplacian->assemble_laplacian(l);
     return rows + row_sums(l);
   }
   // The rows along the spring belong to the same node, and so to the same block of the pattern.

@@ -165,8 +165,8 @@ class Descent {
     const Vec& direction = curvature_.direction;
     double s = first_radius * length_ / size(direction);
     for (int halvings = 0; halvings < most_halvings; ++halvings, s /= 2) {
-      const double ahead = system_.potential(q_ + s * direction);
-      const double behind = system_.potential(q_ - s * direction);
+      const double ahead = system_.potential(Vec(q_ + s * direction));
+      const double behind = system_.potential(Vec(q_ - s * direction));
       // Half of the decrease that the curvature predicts.
       if (!(std::min(ahead, behind) <= v_ + 0.25 * curvature_.value * s * s)) continue;
       move_to(q_ + (ahead <= behind ? s : -s) * direction);

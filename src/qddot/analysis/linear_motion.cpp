@@ -27,7 +27,7 @@ LinearMotion::LinearMotion(const System& system)
   }
   if (system.size() == 0) return;
   SymmetricMatrix k = system.stiffness_pattern();
-  system.stiffness(Vec::Zero(system.size()), k);
+  system.stiffness(Vec(Vec::Zero(system.size())), k);
   const Vec per_root = root_mass_.cwiseInverse();
   const SymmetricMatrix a = -(per_root.asDiagonal() * k * per_root.asDiagonal());
   const EigenPairs modes = dense_pairs(Eigen::MatrixXd(a));

@@ -45,7 +45,7 @@ void EnergyGrowth::start(const State& state) {
   fast_ = 0;
   next_energy_ = work_an_energy;
   random_ = 1;
-  if (!system_.has_potential()) return;
+  if (!is_conserved_) return;
   q_ = state.q;
   const double kinetic = system_.kinetic(state.v);
   fastest_ = {kinetic, state.q, state.v};
@@ -75,7 +75,7 @@ void EnergyGrowth::look(const State& state, double work) {
   const double gap = std::min({part_a_gap * steps_, longest_gap, work_an_energy * steps_ / work});
   until_look_ = is_dear ? 1 : std::max(1, static_cast<int>(std::lround(drawn() * gap)));
   steps_ += until_look_;
-  if (!system_.has_potential()) return;
+  if (!is_conserved_) return;
   propose(fastest_, system_.kinetic(state.v), state);
   propose(farthest_, (state.q - q_).squaredNorm(), state);
   if (!is_dear && work < next_energy_) return;
@@ -113,7 +113,7 @@ double EnergyGrowth::rounding() {
 }
 
 EnergyChange EnergyGrowth::change(const State& state) {
-  if (!system_.has_potential()) return {};
+  if (!is_conserved_) return {};
   see(fastest_.q, fastest_.v);
   see(farthest_.q, farthest_.v);
   const double lost = start_ - see(state.q, state.v), gained = most_ - start_;

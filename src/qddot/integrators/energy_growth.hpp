@@ -8,7 +8,8 @@ namespace qddot {
 
 // The energy that a run gained on its way and lost by its end, beside the energy that its motion
 // can turn into speed, D = the largest E(0) - V(q) seen. An exact motion has the first values of
-// all, also if it begins at rest and falls; so has a system without V.
+// all, also if it begins at rest and falls. So has a system without V, or one that changes its
+// energy.
 struct EnergyChange {
   double growth = 1;  // 1 + (E_max - E(0)) / D, a lower bound
   double lost = 0;    // E(0) - E at the end [J], unless rounding may have made it
@@ -33,7 +34,10 @@ struct EnergyChange {
 class EnergyGrowth {
  public:
   // Borrows the system, which must outlive it.
-  explicit EnergyGrowth(const System& system) : system_(system) {}
+  explicit EnergyGrowth(const System& system)
+      : system_(system),
+        is_conserved_(system.has_potential() && system.is_conservative() &&
+                      system.is_autonomous()) {}
 
   // Begins a new run at `state`.
   void start(const State& state);
@@ -62,6 +66,7 @@ class EnergyGrowth {
   double drawn();
 
   const System& system_;
+  const bool is_conserved_;            // whether the system computes its energy and keeps it
   int until_look_ = 1;                 // steps
   double steps_ = 1;                   // up to that look
   double fast_ = 0, next_energy_ = 0;  // the speed, squared, and the work of the next look at all

@@ -13,6 +13,10 @@
 
 namespace qddot {
 
+struct Splitting;
+struct NystromPair;
+struct SymmetricFormula;
+
 enum class Family { hand_written, sundials };
 // The option by which a method trades speed for accuracy.
 enum class Knob { step_size, rtol };
@@ -41,9 +45,11 @@ enum class Trait {
 enum class Need {
   stiffness,           // K
   constant_stiffness,  // K that is the same everywhere
-  split_forces,        // SplitForces; asked for from start() on, so a method can be made without
+  split_forces,        // Split, in each block
   discrete_gradient,   // DiscreteGradient
   laplacian,           // Laplacian
+  conservative,        // a force that does not depend on velocities
+  autonomous,          // a force, V and K that do not depend on time
 };
 
 // The options that a method takes, beside its knob and scales.
@@ -79,7 +85,13 @@ struct Method {
   SetOf<Option> takes{};
   // The name of the method that this one repeats with SUNDIALS' own matrix and solver; else empty.
   std::string stock_of{};
-  std::unique_ptr<Integrator> (*make)(const Method&, const System&, const Options&) = nullptr;
+  // The coefficients of a method of one of these families; nullptr for all others. Tests try the
+  // order conditions of each.
+  const Splitting* splitting = nullptr;                 // base/kick_drift.hpp
+  const NystromPair* nystrom_pair = nullptr;            // base/nystrom_stages.hpp
+  const SymmetricFormula* symmetric_formula = nullptr;  // base/symmetric_formula.hpp
+  // Makes the stepper of a run (see create in base/fixed_steps.hpp).
+  std::unique_ptr<Stepper> (*make)(SystemRun&) = nullptr;
 
   bool is(Trait trait) const { return traits.has(trait); }
   bool asks(Need need) const { return needs.has(need); }
@@ -96,8 +108,8 @@ inline double linear_limit(const Method& method) {
 
 // Whether the forces are divided into stiff and soft ones, in each block that has unknowns.
 inline bool is_split(const System& system) {
-  const auto blocks = blocks_of(system);
-  if (blocks.empty()) return system.size() == 0 || split_of(system);
+  const auto blocks = system.blocks();
+  if (blocks.empty()) return system.size() == 0 || system.split();
   return std::ranges::all_of(blocks, [](const auto& block) { return is_split(*block); });
 }
 
@@ -107,23 +119,18 @@ inline std::optional<Outcome> misfit(const Method& method, const System& system)
   if (method.asks(Need::constant_stiffness) && !system.stiffness_is_constant())
     return Outcome::stiffness_varies;
   if (method.asks(Need::split_forces) && !is_split(system)) return Outcome::no_stiff_set;
-  if (method.asks(Need::laplacian) && system.size() > 0 && !capability<Laplacian>(system))
+  if (method.asks(Need::laplacian) && system.size() > 0 && !system.laplacian())
     return Outcome::no_laplacian;
-  if (method.asks(Need::discrete_gradient) && system.size() > 0 &&
-      !capability<DiscreteGradient>(system))
+  if (method.asks(Need::discrete_gradient) && system.size() > 0 && !system.discrete_gradient())
     return Outcome::no_discrete_gradient;
+  if (method.asks(Need::conservative) && !system.is_conservative())
+    return Outcome::not_conservative;
+  if (method.asks(Need::autonomous) && !system.is_autonomous()) return Outcome::not_autonomous;
   return {};
 }
 // Whether the method can run on the system, whatever its masses.
 inline bool applies_to(const Method& method, const System& system) {
   return !misfit(method, system);
-}
-
-// Constructs an integrator of class T; for Method::make.
-template <class T>
-std::unique_ptr<Integrator> create(const Method& method, const System& system,
-                                   const Options& options) {
-  return std::make_unique<T>(method, system, options);
 }
 
 }  // namespace qddot

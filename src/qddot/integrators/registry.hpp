@@ -13,10 +13,8 @@ const std::vector<Method>& methods();
 // The method of that name, or nullptr.
 const Method* find_method(std::string_view name);
 
-// Makes an integrator for `system`, which must outlive it; allocates and analyses all it needs.
-// Each block of a system of blocks gets its own integrator. If the method does not fit the system
-// (see misfit), advance() says why and does nothing. Throws std::invalid_argument for an option
-// that is not allowed (see check_options).
+// Makes an integrator for `system`, which must outlive it. Throws std::invalid_argument for an
+// option that is not allowed (see check_options).
 std::unique_ptr<Integrator> make_integrator(const Method& method, const System& system,
                                             const Options& options);
 

@@ -18,32 +18,21 @@ Vec all_masses(const std::vector<std::unique_ptr<System>>& blocks) {
   return mass;
 }
 
-// Calls action(block, its segment of q, the segment's start) for each block.
+// Calls action(block, its segment of `at`, the segment's start) for each block.
 template <class Action>
-void for_each(const std::vector<std::unique_ptr<System>>& blocks, const ConstVec& q,
+void for_each(const std::vector<std::unique_ptr<System>>& blocks, const At& at,
               const Action& action) {
-  Index at = 0;
+  Index first = 0;
   for (const auto& block : blocks) {
-    action(*block, ConstVec(q.segment(at, block->size())), at);
-    at += block->size();
+    action(*block, at.segment(first, block->size()), first);
+    first += block->size();
   }
-}
-
-template <class C>
-bool all_offer(const std::vector<std::unique_ptr<System>>& blocks) {
-  return std::ranges::all_of(blocks,
-                             [](const auto& block) { return capability<C>(*block) != nullptr; });
-}
-template <class C>
-bool any_offers(const std::vector<std::unique_ptr<System>>& blocks) {
-  return std::ranges::any_of(blocks,
-                             [](const auto& block) { return capability<C>(*block) != nullptr; });
 }
 
 }  // namespace
 
 BlockDiagonalSystem::BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks)
-    : CapableSystem(all_masses(blocks)), blocks_(std::move(blocks)) {
+    : System(all_masses(blocks)), blocks_(std::move(blocks)) {
   const auto has_stiffness = [](const auto& block) { return block->has_stiffness(); };
   if (!std::ranges::all_of(blocks_, has_stiffness)) return;
   pattern_.resize(size(), size());
@@ -64,46 +53,73 @@ BlockDiagonalSystem::BlockDiagonalSystem(std::vector<std::unique_ptr<System>> bl
   pattern_.finalize();
 }
 
-bool BlockDiagonalSystem::offers(const std::type_info& type) const {
-  if (type == typeid(SplitStiffness)) return all_offer<SplitStiffness>(blocks_);
-  if (type == typeid(DiscreteGradient)) return all_offer<DiscreteGradient>(blocks_);
-  if (type == typeid(Laplacian)) return all_offer<Laplacian>(blocks_);
-  if (type == typeid(PiecewiseLinear)) return any_offers<PiecewiseLinear>(blocks_);
-  if (type == typeid(Validity)) return any_offers<Validity>(blocks_);
-  if (type == typeid(Kinks)) return any_offers<Kinks>(blocks_);
-  return true;
+const SplitStiffness* BlockDiagonalSystem::split_stiffness() const {
+  const auto has = [](const auto& block) { return block->split_stiffness() != nullptr; };
+  return std::ranges::all_of(blocks_, has) ? this : nullptr;
+}
+
+const DiscreteGradient* BlockDiagonalSystem::discrete_gradient() const {
+  const auto has = [](const auto& block) { return block->discrete_gradient() != nullptr; };
+  return std::ranges::all_of(blocks_, has) ? this : nullptr;
+}
+
+const Laplacian* BlockDiagonalSystem::laplacian() const {
+  const auto has = [](const auto& block) { return block->laplacian() != nullptr; };
+  return std::ranges::all_of(blocks_, has) ? this : nullptr;
+}
+
+const PiecewiseLinear* BlockDiagonalSystem::pieces() const {
+  const auto has = [](const auto& block) { return block->pieces() != nullptr; };
+  return std::ranges::any_of(blocks_, has) ? this : nullptr;
+}
+
+const Validity* BlockDiagonalSystem::validity() const {
+  const auto has = [](const auto& block) { return block->validity() != nullptr; };
+  return std::ranges::any_of(blocks_, has) ? this : nullptr;
+}
+
+const Kinks* BlockDiagonalSystem::kinks() const {
+  const auto has = [](const auto& block) { return block->kinks() != nullptr; };
+  return std::ranges::any_of(blocks_, has) ? this : nullptr;
+}
+
+bool BlockDiagonalSystem::is_conservative() const {
+  return std::ranges::all_of(blocks_, [](const auto& block) { return block->is_conservative(); });
+}
+
+bool BlockDiagonalSystem::is_autonomous() const {
+  return std::ranges::all_of(blocks_, [](const auto& block) { return block->is_autonomous(); });
 }
 
 bool BlockDiagonalSystem::has_potential() const {
   return std::ranges::all_of(blocks_, [](const auto& block) { return block->has_potential(); });
 }
 
-double BlockDiagonalSystem::potential(const ConstVec& q) const {
+double BlockDiagonalSystem::potential(const At& at) const {
   double v = 0;
-  for_each(blocks_, q,
-           [&](const System& block, const ConstVec& own, Index) { v += block.potential(own); });
+  for_each(blocks_, at,
+           [&](const System& block, const At& own, Index) { v += block.potential(own); });
   return v;
 }
 
-void BlockDiagonalSystem::force(const ConstVec& q, MutableVec f) const {
-  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index at) {
-    block.force(own, f.segment(at, block.size()));
+void BlockDiagonalSystem::force(const At& at, MutableVec f) const {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index first) {
+    block.force(own, f.segment(first, block.size()));
   });
 }
 
-void BlockDiagonalSystem::discrete_gradient(const ConstVec& a, const ConstVec& b,
-                                            MutableVec f) const {
-  for_each(blocks_, a, [&](const System& block, const ConstVec& own, Index at) {
+void BlockDiagonalSystem::mean_force(const At& a, const At& b, MutableVec f) const {
+  for_each(blocks_, a, [&](const System& block, const At& own, Index first) {
     const Index n = block.size();
-    capability<DiscreteGradient>(block)->discrete_gradient(own, b.segment(at, n), f.segment(at, n));
+    block.discrete_gradient()->mean_force(own, b.segment(first, n), f.segment(first, n));
   });
 }
 
 template <class Evaluate>
-void BlockDiagonalSystem::assemble(const ConstVec& q, SymmetricMatrix& k,
+void BlockDiagonalSystem::assemble(const At& at, SymmetricMatrix& k,
                                    const Evaluate& evaluate) const {
   Index next = 0;
-  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
     SymmetricMatrix of_block = block.stiffness_pattern();
     evaluate(block, own, of_block);
     k.coeffs().segment(next, of_block.nonZeros()) = of_block.coeffs();
@@ -111,35 +127,36 @@ void BlockDiagonalSystem::assemble(const ConstVec& q, SymmetricMatrix& k,
   });
 }
 
-void BlockDiagonalSystem::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
+void BlockDiagonalSystem::stiffness(const At& at, SymmetricMatrix& k) const {
   if (!has_stiffness()) throw std::logic_error("a block of the system computes no K");
-  assemble(q, k, [](const System& block, const ConstVec& own, SymmetricMatrix& of_block) {
+  assemble(at, k, [](const System& block, const At& own, SymmetricMatrix& of_block) {
     block.stiffness(own, of_block);
   });
 }
 
-void BlockDiagonalSystem::weighted_stiffness(const ConstVec& q, double compression_weight,
+void BlockDiagonalSystem::weighted_stiffness(const At& at, double compression_weight,
                                              SymmetricMatrix& k) const {
-  assemble(q, k, [&](const System& block, const ConstVec& own, SymmetricMatrix& of_block) {
-    capability<SplitStiffness>(block)->weighted_stiffness(own, compression_weight, of_block);
+  assemble(at, k, [&](const System& block, const At& own, SymmetricMatrix& of_block) {
+    block.split_stiffness()->weighted_stiffness(own, compression_weight, of_block);
   });
 }
 
-void BlockDiagonalSystem::material_stiffness(const ConstVec& q, SymmetricMatrix& k) const {
-  assemble(q, k, [](const System& block, const ConstVec& own, SymmetricMatrix& of_block) {
-    capability<SplitStiffness>(block)->material_stiffness(own, of_block);
+void BlockDiagonalSystem::material_stiffness(const At& at, SymmetricMatrix& k) const {
+  assemble(at, k, [](const System& block, const At& own, SymmetricMatrix& of_block) {
+    block.split_stiffness()->material_stiffness(own, of_block);
   });
 }
 
-void BlockDiagonalSystem::laplacian(SymmetricMatrix& l) const {
-  assemble(Vec::Zero(size()), l, [](const System& block, const Vec&, SymmetricMatrix& of_block) {
-    capability<Laplacian>(block)->laplacian(of_block);
+void BlockDiagonalSystem::assemble_laplacian(SymmetricMatrix& l) const {
+  const Vec anywhere = Vec::Zero(size());
+  assemble(anywhere, l, [](const System& block, const At&, SymmetricMatrix& of_block) {
+    block.laplacian()->assemble_laplacian(of_block);
   });
 }
 
 bool BlockDiagonalSystem::bounds_stiffness() const {
   return std::ranges::all_of(
-      blocks_, [](const auto& block) { return capability<Laplacian>(*block)->bounds_stiffness(); });
+      blocks_, [](const auto& block) { return block->laplacian()->bounds_stiffness(); });
 }
 
 bool BlockDiagonalSystem::stiffness_is_constant() const {
@@ -149,18 +166,18 @@ bool BlockDiagonalSystem::stiffness_is_constant() const {
 
 bool BlockDiagonalSystem::is_linear_at(const ConstVec& q) const {
   bool is_linear = true;
-  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
-    const auto* pieces = capability<PiecewiseLinear>(block);
-    is_linear = is_linear && (pieces ? pieces->is_linear_at(own) : block.stiffness_is_constant());
+  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+    const auto* pieces = block.pieces();
+    is_linear = is_linear && (pieces ? pieces->is_linear_at(own.q) : block.stiffness_is_constant());
   });
   return is_linear;
 }
 
 bool BlockDiagonalSystem::is_valid_at(const ConstVec& q) const {
   bool is_valid = true;
-  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
-    const auto* validity = capability<Validity>(block);
-    is_valid = is_valid && (!validity || validity->is_valid_at(own));
+  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+    const auto* validity = block.validity();
+    is_valid = is_valid && (!validity || validity->is_valid_at(own.q));
   });
   return is_valid;
 }
@@ -168,32 +185,32 @@ bool BlockDiagonalSystem::is_valid_at(const ConstVec& q) const {
 std::optional<double> BlockDiagonalSystem::end_of_validity(const State& from,
                                                            const State& to) const {
   std::optional<double> first;
-  for_each(blocks_, from.q, [&](const System& block, const ConstVec& own, Index at) {
-    const auto* validity = capability<Validity>(block);
+  for_each(blocks_, from, [&](const System& block, const At& own, Index at) {
+    const auto* validity = block.validity();
     if (!validity) return;
     const Index n = block.size();
-    const auto t = validity->end_of_validity({from.t, own, from.v.segment(at, n)},
-                                             {to.t, to.q.segment(at, n), to.v.segment(at, n)});
+    const auto t = validity->end_of_validity(
+        {own.t, own.q, own.v}, {to.t, to.q.segment(at, n), to.v.segment(at, n)});
     if (t && (!first || *t < *first)) first = t;
   });
   return first;
 }
 
-Index BlockDiagonalSystem::kinks() const {
+Index BlockDiagonalSystem::kink_count() const {
   Index count = 0;
   for (const auto& block : blocks_) {
-    if (const auto* own = capability<Kinks>(*block)) count += own->kinks();
+    if (const auto* own = block->kinks()) count += own->kink_count();
   }
   return count;
 }
 
 void BlockDiagonalSystem::kink_lengths(const ConstVec& q, MutableVec lengths) const {
   Index next = 0;
-  for_each(blocks_, q, [&](const System& block, const ConstVec& own, Index) {
-    const auto* kinks = capability<Kinks>(block);
+  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+    const auto* kinks = block.kinks();
     if (!kinks) return;
-    kinks->kink_lengths(own, lengths.segment(next, kinks->kinks()));
-    next += kinks->kinks();
+    kinks->kink_lengths(own.q, lengths.segment(next, kinks->kink_count()));
+    next += kinks->kink_count();
   });
 }
 

@@ -8,18 +8,10 @@
 #include "qddot/model/system.hpp"
 
 // Capabilities: what a System may offer beside V, f and K. Each is an interface. A system class
-// derives from System and from the interfaces that it implements; callers ask
-// capability<C>(system).
+// derives from System and from the interfaces that it implements, and overrides System's accessor
+// of each.
 
 namespace qddot {
-
-// The system's capability C, or nullptr if the system does not offer it. This is a slow
-// dynamic_cast: ask when an integrator is made, never in a step.
-template <class C>
-const C* capability(const System& system) {
-  const C* found = dynamic_cast<const C*>(&system);
-  return found && system.offers(typeid(C)) ? found : nullptr;
-}
 
 // K as the sum of the material stiffness and the geometric stiffness, which tension adds across a
 // spring. Compression changes the sign of the second and may make K indefinite. Both functions
@@ -29,10 +21,10 @@ class SplitStiffness {
   virtual ~SplitStiffness() = default;
   // The material stiffness [N/m]: -sum tau' b b' over the springs, b being the gradient of a
   // spring's length. Negative semidefinite at every q.
-  virtual void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const = 0;
+  virtual void material_stiffness(const At& at, SymmetricMatrix& k) const = 0;
   // K [N/m] with the transverse part tau/l (I - nn') of every compressed spring scaled by the
   // weight. A weight of 1 gives K to the last bit, a weight of 0 a negative semidefinite matrix.
-  virtual void weighted_stiffness(const ConstVec& q, double compression_weight,
+  virtual void weighted_stiffness(const At& at, double compression_weight,
                                   SymmetricMatrix& k) const = 0;
 };
 
@@ -42,9 +34,9 @@ class DiscreteGradient {
   virtual ~DiscreteGradient() = default;
   // Writes the discrete gradient f [N] of V: f.(b - a) = V(a) - V(b) for all a and b, and
   // f = force(a) if b = a. Like a force, it conserves linear and angular momentum. Source:
-  // Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, for each spring by itself. a, b, f: n,
-  // f sized by the caller.
-  virtual void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const = 0;
+  // Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, for each spring by itself. f: n, sized
+  // by the caller.
+  virtual void mean_force(const At& a, const At& b, MutableVec f) const = 0;
 };
 
 // A constant matrix L that replaces -K at every q: f(q) = -L q + r(q). The L of springs is -K with
@@ -54,7 +46,7 @@ class Laplacian {
   virtual ~Laplacian() = default;
   // Writes L [N/m] into `l`, which must have the pattern of System::stiffness_pattern(); so only a
   // system with K offers it. No entry couples different axes.
-  virtual void laplacian(SymmetricMatrix& l) const = 0;
+  virtual void assemble_laplacian(SymmetricMatrix& l) const = 0;
   // Whether L bounds the stiffness: x'(-K(q))x <= x'Lx for all q and x.
   virtual bool bounds_stiffness() const = 0;
 };
@@ -90,30 +82,10 @@ class Kinks {
  public:
   virtual ~Kinks() = default;
   // The number of such lengths.
-  virtual Index kinks() const = 0;
+  virtual Index kink_count() const = 0;
   // Writes these signed lengths [m] at q (n) into `lengths`, sized by the caller. They are affine
   // in q.
   virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
-};
-
-// A system that implements all capabilities above; offers() says which of them it has.
-class CapableSystem : public System,
-                      public SplitStiffness,
-                      public DiscreteGradient,
-                      public Laplacian,
-                      public PiecewiseLinear,
-                      public Validity,
-                      public Kinks {
- public:
-  using System::System;
-};
-
-// A system made of systems that no force couples.
-class Blocks {
- public:
-  virtual ~Blocks() = default;
-  // The blocks in order, each with a run of consecutive unknowns of its own.
-  virtual std::span<const std::unique_ptr<System>> blocks() const = 0;
 };
 
 // A system divided in two: f = stiff->force + soft->force, and V and K are sums likewise. Both have
@@ -127,26 +99,5 @@ struct Split {
   std::shared_ptr<const System> stiff_block;
   std::vector<Index> stiff_unknowns;
 };
-
-// A system whose forces are divided into stiff and soft ones. A system of blocks does not offer
-// this; each of its blocks does.
-class SplitForces {
- public:
-  virtual ~SplitForces() = default;
-  // The stiff and the soft system.
-  virtual const Split& split() const = 0;
-};
-
-// The system's blocks; none if it is one whole.
-inline std::span<const std::unique_ptr<System>> blocks_of(const System& system) {
-  const auto* blocks = capability<Blocks>(system);
-  return blocks ? blocks->blocks() : std::span<const std::unique_ptr<System>>();
-}
-
-// The system's stiff and soft forces; nullptr if it is not divided.
-inline const Split* split_of(const System& system) {
-  const auto* forces = capability<SplitForces>(system);
-  return forces ? &forces->split() : nullptr;
-}
 
 }  // namespace qddot

@@ -12,35 +12,53 @@ namespace qddot {
 // comparison with the system that leaves them out.
 //
 // It has K if `system` has K, and offers the capabilities of `system` except Blocks.
-class ConstrainedSystem final : public CapableSystem, public SplitForces {
+class ConstrainedSystem final : public System,
+                                public SplitStiffness,
+                                public DiscreteGradient,
+                                public Laplacian,
+                                public PiecewiseLinear,
+                                public Validity,
+                                public Kinks {
  public:
   // `is_held`: for each unknown of `system`.
   ConstrainedSystem(std::shared_ptr<const System> system, std::vector<bool> is_held);
 
-  double potential(const ConstVec& q) const override { return system_->potential(q); }
+  double potential(const At& at) const override { return system_->potential(at); }
   bool has_potential() const override { return system_->has_potential(); }
-  void force(const ConstVec& q, MutableVec f) const override;
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
+  void force(const At& at, MutableVec f) const override;
+  bool is_conservative() const override { return system_->is_conservative(); }
+  bool is_autonomous() const override { return system_->is_autonomous(); }
+  void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
-  bool offers(const std::type_info& type) const override;
 
-  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
-  void weighted_stiffness(const ConstVec& q, double compression_weight,
+  const SplitStiffness* split_stiffness() const override {
+    return split_stiffness_ ? this : nullptr;
+  }
+  const DiscreteGradient* discrete_gradient() const override {
+    return discrete_gradient_ ? this : nullptr;
+  }
+  const Laplacian* laplacian() const override { return laplacian_ ? this : nullptr; }
+  const PiecewiseLinear* pieces() const override { return pieces_ ? this : nullptr; }
+  const Validity* validity() const override { return validity_ ? this : nullptr; }
+  const Kinks* kinks() const override { return kinks_ ? this : nullptr; }
+  const Split* split() const override { return split_ ? &*split_ : nullptr; }
+
+  void material_stiffness(const At& at, SymmetricMatrix& k) const override;
+  void weighted_stiffness(const At& at, double compression_weight,
                           SymmetricMatrix& k) const override;
-  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override;
-  void laplacian(SymmetricMatrix& l) const override;
+  void mean_force(const At& a, const At& b, MutableVec f) const override;
+  void assemble_laplacian(SymmetricMatrix& l) const override;
   bool bounds_stiffness() const override { return laplacian_->bounds_stiffness(); }
   bool is_linear_at(const ConstVec& q) const override { return pieces_->is_linear_at(q); }
   bool is_valid_at(const ConstVec& q) const override { return validity_->is_valid_at(q); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
     return validity_->end_of_validity(from, to);
   }
-  Index kinks() const override { return kinks_->kinks(); }
+  Index kink_count() const override { return kinks_->kink_count(); }
   void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
     kinks_->kink_lengths(q, lengths);
   }
-  const Split& split() const override { return *split_; }
 
  private:
   void clear_held(SymmetricMatrix& k) const;

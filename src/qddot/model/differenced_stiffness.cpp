@@ -87,16 +87,17 @@ DifferencedStiffness::DifferencedStiffness(std::shared_ptr<const System> system,
   columns_of_ = coloured(rows_of_);
 }
 
-void DifferencedStiffness::stiffness(const ConstVec& q, SymmetricMatrix& k) const {
+void DifferencedStiffness::stiffness(const At& at, SymmetricMatrix& k) const {
+  const VecView& q = at.q;
   const double largest = q.size() > 0 ? q.lpNorm<Eigen::Infinity>() : 0;
   const double d = std::cbrt(machine_epsilon) * std::max(length_, largest);
   Vec moved = q, ahead(size()), behind(size());
   k.coeffs().setZero();
   for (const auto& columns : columns_of_) {
     for (const Index j : columns) moved[j] = q[j] + d;
-    system_->force(moved, ahead);
+    system_->force({at.t, moved, at.v}, ahead);
     for (const Index j : columns) moved[j] = q[j] - d;
-    system_->force(moved, behind);
+    system_->force({at.t, moved, at.v}, behind);
     for (const Index j : columns) {
       const double width = (q[j] + d) - (q[j] - d);  // the difference as rounded
       moved[j] = q[j];

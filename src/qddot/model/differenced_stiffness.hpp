@@ -21,10 +21,12 @@ class DifferencedStiffness final : public System {
   DifferencedStiffness(std::shared_ptr<const System> system,
                        const std::vector<std::pair<Index, Index>>& pairs, double length = 1);
 
-  double potential(const ConstVec& q) const override { return system_->potential(q); }
+  double potential(const At& at) const override { return system_->potential(at); }
   bool has_potential() const override { return system_->has_potential(); }
-  void force(const ConstVec& q, MutableVec f) const override { system_->force(q, f); }
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override;
+  void force(const At& at, MutableVec f) const override { system_->force(at, f); }
+  bool is_conservative() const override { return system_->is_conservative(); }
+  bool is_autonomous() const override { return system_->is_autonomous(); }
+  void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
 

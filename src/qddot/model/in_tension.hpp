@@ -70,7 +70,7 @@ class InTension {
   bool empty() const { return springs_.empty(); }
 
   // Whether no spring is shorter than its rest length at q.
-  bool holds_at(const Layout<D>& layout, const ConstVec& q) const {
+  bool holds_at(const Layout<D>& layout, const VecView& q) const {
     return std::ranges::all_of(springs_, [&](const Spring& spring) {
       return difference(layout, spring, q).squaredNorm() >= bound(spring);
     });
@@ -121,7 +121,7 @@ class InTension {
     const double l = (1 - forgiven) * spring.law.rest_length;
     return l * l;
   }
-  static Point difference(const Layout<D>& layout, const Spring& spring, const ConstVec& q) {
+  static Point difference(const Layout<D>& layout, const Spring& spring, const VecView& q) {
     if (spring.j < 0) return spring.place - layout.at(q, spring.i);
     return spring.place.cwiseProduct(layout.at(q, spring.j)) - layout.at(q, spring.i);
   }

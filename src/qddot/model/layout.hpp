@@ -36,7 +36,7 @@ class Layout {
   bool is_full(int i) const { return count(i) == D; }
 
   // The D coordinates of node i in q, and the addition of x to those of node i in f.
-  Point at(const ConstVec& q, int i) const {
+  Point at(const VecView& q, int i) const {
     Point x = Point::Zero();
     for (int a = 0; a < count(i); ++a) x[axis(i, a)] = q[first(i) + a];
     return x;

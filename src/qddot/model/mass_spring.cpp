@@ -72,7 +72,13 @@ Network among(const std::vector<int>& nodes, const Network& network) {
 }
 
 template <int D>
-class MassSpring final : public CapableSystem, public SplitForces {
+class MassSpring final : public System,
+                         public SplitStiffness,
+                         public DiscreteGradient,
+                         public Laplacian,
+                         public PiecewiseLinear,
+                         public Validity,
+                         public Kinks {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
@@ -80,7 +86,8 @@ class MassSpring final : public CapableSystem, public SplitForces {
   MassSpring(const Network& network, Forces forces)
       : MassSpring(network, forces, {network.node_mass.size(), network.zero_coordinates}) {}
 
-  double potential(const ConstVec& q) const override {
+  double potential(const At& at) const override {
+    const VecView& q = at.q;
     double v = constant_energy_ - weight_.dot(q);
     if (by_node_) {
       v += by_node_->half_sum_energies(q);
@@ -94,7 +101,8 @@ class MassSpring final : public CapableSystem, public SplitForces {
     return v;
   }
 
-  void force(const ConstVec& q, MutableVec f) const override {
+  void force(const At& at, MutableVec f) const override {
+    const VecView& q = at.q;
     if (by_node_) return by_node_->sum_forces(q, weight_, f);
     f = weight_;
     springs_.add_forces(
@@ -102,7 +110,8 @@ class MassSpring final : public CapableSystem, public SplitForces {
         f);
   }
 
-  void discrete_gradient(const ConstVec& a, const ConstVec& b, MutableVec f) const override {
+  void mean_force(const At& start, const At& end, MutableVec f) const override {
+    const VecView &a = start.q, &b = end.q;
     if (by_node_) return by_node_->sum_mean_forces(a, b, weight_, f);
     f = weight_;
     springs_.add_forces(
@@ -113,12 +122,11 @@ class MassSpring final : public CapableSystem, public SplitForces {
         f);
   }
 
-  void stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
-    weighted_stiffness(q, 1, k);
-  }
+  void stiffness(const At& at, SymmetricMatrix& k) const override { weighted_stiffness(at, 1, k); }
 
-  void weighted_stiffness(const ConstVec& q, double compression_weight,
+  void weighted_stiffness(const At& at, double compression_weight,
                           SymmetricMatrix& k) const override {
+    const VecView& q = at.q;
     const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
     };
@@ -127,7 +135,8 @@ class MassSpring final : public CapableSystem, public SplitForces {
     add_left_out(q, k, block);
   }
 
-  void material_stiffness(const ConstVec& q, SymmetricMatrix& k) const override {
+  void material_stiffness(const At& at, SymmetricMatrix& k) const override {
+    const VecView& q = at.q;
     const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
     };
@@ -138,15 +147,19 @@ class MassSpring final : public CapableSystem, public SplitForces {
 
   const SymmetricMatrix& stiffness_pattern() const override { return springs_.pattern(); }
   bool stiffness_is_constant() const override { return linear_; }
-  bool offers(const std::type_info& type) const override {
-    if (type == typeid(PiecewiseLinear)) return linear_ && keeps_directions();
-    if (type == typeid(Validity)) return !in_tension_.empty();
-    if (type == typeid(Kinks)) return kinks_ > 0;
-    if (type == typeid(SplitForces)) return split_.has_value();
-    return true;
-  }
 
-  bool is_linear_at(const ConstVec& q) const override {
+  const SplitStiffness* split_stiffness() const override { return this; }
+  const DiscreteGradient* discrete_gradient() const override { return this; }
+  const Laplacian* laplacian() const override { return this; }
+  const PiecewiseLinear* pieces() const override {
+    return linear_ && keeps_directions() ? this : nullptr;
+  }
+  const Validity* validity() const override { return in_tension_.empty() ? nullptr : this; }
+  const Kinks* kinks() const override { return kinks_ > 0 ? this : nullptr; }
+  const Split* split() const override { return split_ ? &*split_ : nullptr; }
+
+  bool is_linear_at(const ConstVec& at) const override {
+    const VecView q = at;
     const signed char* direction = directions_.data();
     bool all = true;
     springs_.for_each([&](const auto& spring) {
@@ -155,19 +168,19 @@ class MassSpring final : public CapableSystem, public SplitForces {
     });
     return all;
   }
-  const Split& split() const override { return *split_; }
 
   bool bounds_stiffness() const override { return !has_quartic_; }
   // A network with rest lengths of zero has the same stiffness at every q.
-  void laplacian(SymmetricMatrix& l) const override {
-    springs_.assemble(Vec::Zero(size()), l, [](const SpringLaw& law, const Point&) -> Block {
+  void assemble_laplacian(SymmetricMatrix& l) const override {
+    springs_.assemble(Vec(Vec::Zero(size())), l, [](const SpringLaw& law, const Point&) -> Block {
       return -law.stiffness * Block::Identity();
     });
   }
 
   // A length of zero is a kink only on a line.
-  Index kinks() const override { return kinks_; }
-  void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
+  Index kink_count() const override { return kinks_; }
+  void kink_lengths(const ConstVec& at, MutableVec lengths) const override {
+    const VecView q = at;
     Index i = 0;
     springs_.for_each([&](const auto& spring) {
       if (turns_over(spring.law)) lengths[i++] = springs_.between(q, spring)[0];
@@ -184,7 +197,7 @@ class MassSpring final : public CapableSystem, public SplitForces {
 
  private:
   MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
-      : CapableSystem(masses(network, layout)),
+      : System(masses(network, layout)),
         layout_(layout),
         springs_(network, layout_),
         weight_(weights(network, layout)),
@@ -246,7 +259,7 @@ class MassSpring final : public CapableSystem, public SplitForces {
 
   // Adds the springs that the kernel of K leaves out.
   template <class BlockOf>
-  void add_left_out(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void add_left_out(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (const int e : columns_->links_left_out()) springs_.add_link_block(q, k, block, e);
     springs_.add_image_blocks(q, k, block);
   }

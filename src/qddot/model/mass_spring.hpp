@@ -54,7 +54,7 @@ struct Network {
   std::vector<unsigned> zero_coordinates{};
   Vec load{};                           // constant forces beside the weight [N], D N; empty = none
   bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
-  bool offers_split = false;            // whether the system offers SplitForces, by `stiff`
+  bool offers_split = false;            // whether the system offers Split, by `stiff`
 };
 
 // The order of summing forces: spring by spring, node by node in vectors

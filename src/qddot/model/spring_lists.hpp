@@ -90,19 +90,19 @@ class SpringLists {
   }
 
   // d from a spring's end i to its end j: diag(mirror) x_j - x_i or point - x_i.
-  Point between(const ConstVec& q, const Link& link) const {
+  Point between(const VecView& q, const Link& link) const {
     return q.segment<D>(link.j) - q.segment<D>(link.i);
   }
-  Point between(const ConstVec& q, const Image& image) const {
+  Point between(const VecView& q, const Image& image) const {
     return image.mirror.cwiseProduct(q.segment<D>(image.j)) - q.segment<D>(image.i);
   }
-  Point between(const ConstVec& q, const Anchor& anchor) const {
+  Point between(const VecView& q, const Anchor& anchor) const {
     return anchor.point - q.segment<D>(anchor.i);
   }
-  Point between(const ConstVec& q, const EdgeLink& link) const {
+  Point between(const VecView& q, const EdgeLink& link) const {
     return link.mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
   }
-  Point between(const ConstVec& q, const EdgeAnchor& anchor) const {
+  Point between(const VecView& q, const EdgeAnchor& anchor) const {
     return anchor.point - layout_.at(q, anchor.i);
   }
 
@@ -116,7 +116,7 @@ class SpringLists {
   // Sets K to the sum over all springs of B = block(law, d), with S = diag(mirror): K_ii -= B,
   // K_jj -= S B S, K_ij += B S. If i = j, all three are one block.
   template <class BlockOf>
-  void assemble(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void assemble(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
     k.coeffs().setZero();
     for_each([&](const auto& spring) {
       subtract_own_blocks(spring, block(spring.law, between(q, spring)), k);
@@ -127,7 +127,7 @@ class SpringLists {
 
   // Adds the off-diagonal block of link number e.
   template <class BlockOf>
-  void add_link_block(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block,
+  void add_link_block(const VecView& q, SymmetricMatrix& k, const BlockOf& block,
                       std::size_t e) const {
     const Link& link = links_[e];
     add_below_diagonal(k, std::min(link.i, link.j), link_places_[e],
@@ -136,7 +136,7 @@ class SpringLists {
 
   // Adds the off-diagonal blocks of images and of links whose nodes have fewer unknowns.
   template <class BlockOf>
-  void add_image_blocks(const ConstVec& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void add_image_blocks(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (std::size_t e = 0; e < images_.size(); ++e) {
       const auto& [i, j, mirror, law] = images_[e];
       const Block b = block(law, between(q, images_[e]));

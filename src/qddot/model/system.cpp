@@ -7,7 +7,7 @@ const SymmetricMatrix& System::stiffness_pattern() const {
   return none;
 }
 
-void System::stiffness(const ConstVec&, SymmetricMatrix&) const {
+void System::stiffness(const At&, SymmetricMatrix&) const {
   throw std::logic_error("the system computes no stiffness matrix K");
 }
 

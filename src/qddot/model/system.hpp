@@ -1,7 +1,10 @@
 #pragma once
 
+#include <concepts>
+#include <limits>
+#include <memory>
+#include <span>
 #include <stdexcept>
-#include <typeinfo>
 #include <utility>
 
 #include <Eigen/Core>
@@ -26,13 +29,59 @@ struct State {
   Vec q, v;
 };
 
+// A vector of numbers that is read in place: those of a Vec, or of a part of one, which must
+// outlive this. An expression has to be evaluated first, as in Vec(a + b).
+class VecView : public Eigen::Map<const Vec> {
+ public:
+  template <class Derived>
+    requires(bool(Derived::IsVectorAtCompileTime) && Derived::InnerStrideAtCompileTime == 1 &&
+             (Eigen::internal::traits<Derived>::Flags & Eigen::DirectAccessBit) != 0)
+  VecView(const Eigen::DenseBase<Derived>& x)
+      : Eigen::Map<const Vec>(x.derived().data(), x.size()) {}
+  VecView(const double* numbers, Index size) : Eigen::Map<const Vec>(numbers, size) {}
+};
+
+// The arguments of a force: the time t [s], positions q [m] and velocities v [m/s], both of length
+// n. They refer to vectors that must outlive this, and cost no copy.
+//
+// Formulas for f(t, q) leave v out: it is then empty. Positions alone leave out t as well: it is
+// then NaN. So only a system whose is_conservative() and is_autonomous() hold takes those.
+struct At {
+  At(double time, VecView positions, VecView velocities)
+      : t(time), q(positions), v(velocities) {}
+  At(double time, VecView positions) : At(time, positions, VecView(nullptr, 0)) {}
+  At(const State& state) : At(state.t, state.q, state.v) {}
+  template <class Derived>
+    requires std::convertible_to<const Derived&, VecView>
+  At(const Eigen::DenseBase<Derived>& positions)
+      : At(std::numeric_limits<double>::quiet_NaN(), positions.derived()) {}
+
+  // The same of `count` unknowns from the first one on.
+  At segment(Index first, Index count) const {
+    const bool has_v = v.size() > 0;
+    return {t, {q.data() + first, count}, {has_v ? v.data() + first : nullptr, has_v ? count : 0}};
+  }
+
+  double t;
+  VecView q, v;
+};
+
+class SplitStiffness;
+class DiscreteGradient;
+class Laplacian;
+class PiecewiseLinear;
+class Validity;
+class Kinks;
+struct Split;
+
 // A mechanical system with the Lagrangian L = T - V, T = 1/2 v'Mv, as in the lecture. It gives M,
 // V, f and K of the equation of motion M q'' = f(q), and knows no time stepping. SI units. Signs:
 // f = -dV/dq and K = df/dq = -d2V/dq2, so K is negative semidefinite at rest (many codes store -K).
 // Objects are immutable; every function may be called from any thread.
 //
 // A user's force law is a class derived from this with potential() and force(). Implicit methods
-// need stiffness() as well. capabilities.hpp lists what some methods need beyond K.
+// need stiffness() as well. capabilities.hpp lists what some methods need beyond K. A force that
+// depends on v or t says so, and methods whose formulas are for f(q) alone refuse it (Need).
 class System {
  public:
   explicit System(Vec mass) : mass_(std::move(mass)) {}
@@ -49,28 +98,43 @@ class System {
   // The kinetic energy 1/2 v'Mv [J]; v: n.
   double kinetic(const ConstVec& v) const { return 0.5 * v.dot(mass_.cwiseProduct(v)); }
 
-  // The potential energy V(q) [J]; q: n.
-  virtual double potential(const ConstVec& q) const = 0;
+  // The potential energy V [J].
+  virtual double potential(const At& at) const = 0;
   // Whether the system computes V. If not, nothing calls potential(), no energy is watched, and
   // implicit steps use no line search.
   virtual bool has_potential() const { return true; }
-  // Writes the force f = -dV/dq [N]; q, f: n, f sized by the caller.
-  virtual void force(const ConstVec& q, MutableVec f) const = 0;
+  // Writes the force f [N], which is -dV/dq where it depends on positions alone; f: n, sized by the
+  // caller.
+  virtual void force(const At& at, MutableVec f) const = 0;
+  // Whether f does not depend on v, so that f = -dV/dq.
+  virtual bool is_conservative() const { return true; }
+  // Whether f, V and K do not depend on t.
+  virtual bool is_autonomous() const { return true; }
 
-  // The n x n pattern of K, the same at every q, with zero values. It is made once and copied by
+  // The n x n pattern of K, the same everywhere, with zero values. It is made once and copied by
   // each user. It is 0 x 0 if the system computes no K.
   virtual const SymmetricMatrix& stiffness_pattern() const;
   // Whether the system computes K.
   bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
-  // Writes K = df/dq [N/m] at q (n) into `k`, which must have the pattern stiffness_pattern().
-  // Throws std::logic_error if the system computes no K.
-  virtual void stiffness(const ConstVec& q, SymmetricMatrix& k) const;
+  // Writes K = df/dq [N/m] into `k`, which must have the pattern stiffness_pattern(). Throws
+  // std::logic_error if the system computes no K.
+  virtual void stiffness(const At& at, SymmetricMatrix& k) const;
   // Whether K is the same at every q of the motion, so that the motion is linear.
   virtual bool stiffness_is_constant() const { return false; }
 
-  // Whether this object offers the capability of that type (see capabilities.hpp), which its class
-  // implements. A wrapper declines what the systems in it lack. Only capability() calls this.
-  virtual bool offers(const std::type_info&) const { return true; }
+  // Capabilities, each nullptr or empty if the system lacks it; see capabilities.hpp. A class that
+  // implements one returns `this`; a wrapper has those of the systems in it.
+  virtual const SplitStiffness* split_stiffness() const { return nullptr; }
+  virtual const DiscreteGradient* discrete_gradient() const { return nullptr; }
+  virtual const Laplacian* laplacian() const { return nullptr; }
+  virtual const PiecewiseLinear* pieces() const { return nullptr; }
+  virtual const Validity* validity() const { return nullptr; }
+  virtual const Kinks* kinks() const { return nullptr; }
+  // The stiff and the soft forces. A system of blocks has none; each of its blocks may.
+  virtual const Split* split() const { return nullptr; }
+  // The systems that no force couples, in order, each with a run of consecutive unknowns of its
+  // own; none if the system is one whole.
+  virtual std::span<const std::unique_ptr<System>> blocks() const { return {}; }
 
  private:
   Vec mass_;
@@ -78,7 +142,7 @@ class System {
 
 // Kinetic plus potential energy [J] of a state.
 inline double total_energy(const System& system, const State& state) {
-  return system.kinetic(state.v) + system.potential(state.q);
+  return system.kinetic(state.v) + system.potential(state);
 }
 
 // Throws std::invalid_argument if the system computes no K.

@@ -24,12 +24,11 @@ void combine(const double* x, double d, const double* v, double c, const Eigen::
 
 }  // namespace
 
-void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out) {
+void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out) {
   kernels::vector_kernels().add_scaled(x.data(), c, z.data(), out.data(), x.size());
 }
 
-void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
-                  MutableVec out) {
+void add_quotient(const VecView& x, double c, const VecView& f, const VecView& m, MutableVec out) {
   kernels::vector_kernels().add_quotient(x.data(), c, f.data(), m.data(), out.data(), x.size());
 }
 
@@ -40,20 +39,20 @@ void kick_and_drift(const Motion& motion, double c0, double c, double h, Mutable
                                            q_next.data(), w.data(), q.size());
 }
 
-void divide(const ConstVec& f, const ConstVec& m, MutableVec out) {
+void divide(const VecView& f, const VecView& m, MutableVec out) {
   kernels::vector_kernels().divide(f.data(), m.data(), out.data(), f.size());
 }
 
-void multiply(const ConstVec& a, const ConstVec& b, MutableVec out) {
+void multiply(const VecView& a, const VecView& b, MutableVec out) {
   kernels::vector_kernels().multiply(a.data(), b.data(), out.data(), a.size());
 }
 
-void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
+void add_combination(const VecView& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out) {
   combine(x.data(), 0, nullptr, c, k, b, out.data(), out.size());
 }
 
-void add_combination(const ConstVec& x, double d, const ConstVec& v, double c,
+void add_combination(const VecView& x, double d, const VecView& v, double c,
                      const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out) {
   combine(x.data(), d, v.data(), c, k, b, out.data(), out.size());
 }
@@ -68,24 +67,23 @@ void set_combination(std::span<const double* const> z, const double* b, MutableV
                                             static_cast<int>(z.size()), out.data(), out.size());
 }
 
-void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec& c,
-                     const ConstVec& q, const ConstVec& d, MutableVec u_0, MutableVec d_next,
-                     MutableVec q_next) {
+void step_by_history(const HistoryStep& step, const VecView& f, const VecView& c, const VecView& q,
+                     const VecView& d, MutableVec u_0, MutableVec d_next, MutableVec q_next) {
   kernels::vector_kernels().step_by_history(f.data(), c.data(), step.u.data(), step.r, step.b,
                                             static_cast<int>(step.u.size()) - 1, q.data(), d.data(),
                                             u_0.data(), d_next.data(), q_next.data(), f.size());
 }
 
-double squared_norm(const ConstVec& x) {
+double squared_norm(const VecView& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
 }
 
-double squared_norm_of_kicked(const ConstVec& v, double c, const ConstVec& f, const ConstVec& m) {
+double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const VecView& m) {
   return kernels::vector_kernels().squared_norm_of_kicked(v.data(), c, f.data(), m.data(),
                                                           v.size());
 }
 
-double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol) {
+double squared_error(const VecView& x, double rtol, const VecView& y, double atol) {
   return kernels::vector_kernels().squared_error(x.data(), rtol, y.data(), atol, x.size());
 }
 

@@ -9,10 +9,9 @@
 namespace qddot {
 
 // out = x + c z
-void add_scaled(const ConstVec& x, double c, const ConstVec& z, MutableVec out);
+void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out);
 // out = x + c f/m, entry by entry.
-void add_quotient(const ConstVec& x, double c, const ConstVec& f, const ConstVec& m,
-                  MutableVec out);
+void add_quotient(const VecView& x, double c, const VecView& f, const VecView& m, MutableVec out);
 // Two kicks and a drift: w = (v + c0 f/m) + c f/m, `q_next` = q + h w.
 struct Motion {
   const Vec &q, &v, &f, &m;
@@ -20,13 +19,13 @@ struct Motion {
 void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
                     MutableVec w);
 // out = f/m and out = a b, entry by entry.
-void divide(const ConstVec& f, const ConstVec& m, MutableVec out);
-void multiply(const ConstVec& a, const ConstVec& b, MutableVec out);
+void divide(const VecView& f, const VecView& m, MutableVec out);
+void multiply(const VecView& a, const VecView& b, MutableVec out);
 // out = x + c K b, with as many first columns of K as b has entries, at most 32.
-void add_combination(const ConstVec& x, double c, const Eigen::MatrixXd& k,
+void add_combination(const VecView& x, double c, const Eigen::MatrixXd& k,
                      std::span<const double> b, MutableVec out);
 // out = x + d v + c K b, likewise.
-void add_combination(const ConstVec& x, double d, const ConstVec& v, double c,
+void add_combination(const VecView& x, double d, const VecView& v, double c,
                      const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out);
 // out = c K b
 void set_combination(double c, const Eigen::MatrixXd& k, std::span<const double> b, MutableVec out);
@@ -39,14 +38,13 @@ struct HistoryStep {
   std::span<const double* const> u;
   const double *r, *b;
 };
-void step_by_history(const HistoryStep& step, const ConstVec& f, const ConstVec& c,
-                     const ConstVec& q, const ConstVec& d, MutableVec u_0, MutableVec d_next,
-                     MutableVec q_next);
+void step_by_history(const HistoryStep& step, const VecView& f, const VecView& c, const VecView& q,
+                     const VecView& d, MutableVec u_0, MutableVec d_next, MutableVec q_next);
 // |x|^2
-double squared_norm(const ConstVec& x);
+double squared_norm(const VecView& x);
 // |v + c f/m|^2
-double squared_norm_of_kicked(const ConstVec& v, double c, const ConstVec& f, const ConstVec& m);
+double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const VecView& m);
 // The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of the tolerance, squared.
-double squared_error(const ConstVec& x, double rtol, const ConstVec& y, double atol);
+double squared_error(const VecView& x, double rtol, const VecView& y, double atol);
 
 }  // namespace qddot

@@ -53,7 +53,7 @@ struct Scene {
   // with the velocities as drawn.
   bool starts_at_equilibrium = false;
   // Springs with more stiffness [N/m] are stiff, for methods that treat their forces apart
-  // (SplitForces). If missing, none are named. Changes no motion.
+  // (Split). If missing, none are named. Changes no motion.
   std::optional<double> stiff_above{};
   // Sentences that tell the user how the scene was read. Changes no motion.
   std::vector<std::string> warnings{};

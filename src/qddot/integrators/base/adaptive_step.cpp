@@ -40,26 +40,25 @@ constexpr double roundings_over_jump = 8 * machine_epsilon;
 
 }  // namespace
 
-AdaptiveStep::AdaptiveStep(const Method& method, const System& system, const Options& options,
-                           const Accuracy& accuracy)
-    : Integrator(method, system, options),
+AdaptiveStep::AdaptiveStep(SystemRun& run, const Accuracy& accuracy)
+    : Formula(run),
       accuracy_(accuracy),
-      atol_q_(options.atol > 0 ? options.atol : options.rtol * options.length),
-      atol_v_(options.atol > 0 ? options.atol : options.rtol * options.speed),
-      per_mass_(system.mass().cwiseInverse()),
-      f_(system.size()),
-      error_q_(system.size()),
-      error_v_(system.size()),
+      atol_q_(options().atol > 0 ? options().atol : options().rtol * options().length),
+      atol_v_(options().atol > 0 ? options().atol : options().rtol * options().speed),
+      per_mass_(system().mass().cwiseInverse()),
+      f_(system().size()),
+      error_q_(system().size()),
+      error_v_(system().size()),
       instants_(std::max<std::size_t>(accuracy.instants, 2) + 1,
-                {{0, Vec(system.size()), Vec(system.size())}, Vec(system.size())}),
+                {{0, Vec(system().size()), Vec(system().size())}, Vec(system().size())}),
       aside_{instants_[0], instants_[0]},
-      kinks_(system) {
+      kinks_(system()) {
   // No polynomial leads over a jump.
   if (kinks_.has_kinks() && accuracy_.instants > 2) accuracy_.instants = 0;
 }
 
-void AdaptiveStep::acceleration(const Vec& q, MutableVec a) {
-  force(q, f_);
+void AdaptiveStep::acceleration(const At& at, MutableVec a) {
+  force(at, f_);
   multiply(f_, per_mass_, a);
 }
 
@@ -73,7 +72,7 @@ void AdaptiveStep::start(const State& state) {
   newest_ = 0;
   count_ = 1;
   last().state = state;
-  acceleration(state.q, last().a);
+  acceleration({state.t, state.q}, last().a);
   ended_ = last().a.allFinite() ? Outcome::reached_end : Outcome::not_finite;
   if (ended_ == Outcome::reached_end) h_ = first_step();
   last_error_ = 1;
@@ -95,7 +94,7 @@ double AdaptiveStep::first_step() {
   const double h0 = d0 > nothing && d1 > 0 ? std::min(0.01 * d0 / d1, whole) : blind;
   State& ahead = last(instants_.size() - 1).state;
   ahead.q = now.q + h0 * now.v;
-  acceleration(ahead.q, error_v_);
+  acceleration({now.t + h0, ahead.q}, error_v_);
   error_v_ = (error_v_ - a) / h0;
   const double d2 = norm(now, a, error_v_);
   const double w = std::max(d0 > nothing ? d1 / d0 : 0, d1 > 0 ? d2 / d1 : 0);
@@ -106,20 +105,17 @@ double AdaptiveStep::first_step() {
   return h > 0 ? h : blind;
 }
 
-Outcome AdaptiveStep::run_to(State& state, double t_stop) {
-  if (must_stop()) return Outcome::over_budget;
-  try {
-    while (ended_ == Outcome::reached_end && !can_show(t_stop)) ended_ = take_step();
-  } catch (...) {
-    state = last().state;
-    throw;
-  }
-  if (last().state.t < t_stop) {
-    state = last().state;
-    return ended_;
-  }
-  return show(t_stop, state);
+// After the last step, states are shown by the instants that there are.
+bool AdaptiveStep::has_passed(double t) {
+  return ended_ == Outcome::reached_end ? can_show(t) : last().state.t >= t;
 }
+
+Outcome AdaptiveStep::step(double) {
+  if (ended_ == Outcome::reached_end) ended_ = take_step();
+  return ended_;
+}
+
+void AdaptiveStep::show_last(State& state) { state = last().state; }
 
 // Whether the kept instants determine the state at t. Their polynomial is most accurate in its
 // middle; at the end of the run no more instants come.
@@ -179,7 +175,7 @@ Outcome AdaptiveStep::step_aside(const Instant& from, double t, State& state) {
     next.state.t = h < left ? now->state.t + h : t;
     h = next.state.t - now->state.t;
     outcome = must_stop() ? Outcome::over_budget : attempt(*now, h, next, error_q_, error_v_);
-    if (outcome == Outcome::reached_end) outcome = check_step(now->state, next.state);
+    if (outcome == Outcome::reached_end) outcome = run_.check_step(now->state, next.state);
     if (outcome != Outcome::reached_end) break;
     const double error = norm(now->state, error_q_, error_v_);
     const double factor = factor_after(error);
@@ -228,7 +224,7 @@ Outcome AdaptiveStep::take_step() {
     double error = INFINITY;
     if (outcome == Outcome::reached_end) {
       error = norm(now.state, error_q_, error_v_);
-      outcome = std::isfinite(error) ? check_step(now.state, next.state) : Outcome::not_finite;
+      outcome = std::isfinite(error) ? run_.check_step(now.state, next.state) : Outcome::not_finite;
     }
     const bool may_jump = kinks_.has_kinks();
     if (outcome == Outcome::reached_end && (error <= 1 || may_jump)) {
@@ -311,7 +307,7 @@ void AdaptiveStep::accept(bool is_limited) {
   newest_ = (newest_ + 1) % instants_.size();
   count_ = std::min(count_ + 1, instants_.size());
   ++counts().steps;
-  note(last().state);
+  run_.note(last().state);
   if (is_limited) ++counts().stability_limited_steps;
 }
 

@@ -6,9 +6,9 @@
 #include <span>
 
 #include "qddot/integrators/base/creep.hpp"
+#include "qddot/integrators/base/formula.hpp"
 #include "qddot/integrators/base/hermite.hpp"
 #include "qddot/integrators/base/kink_search.hpp"
-#include "qddot/integrators/integrator.hpp"
 
 namespace qddot {
 
@@ -31,7 +31,7 @@ namespace qddot {
 // which a length may pass through zero and return are tried again shorter. If a length turns, or
 // would turn without the jump, within a few tolerances of zero, the run ends: the two ways part
 // there, and which of them the motion takes is beyond the tolerance.
-class AdaptiveStep : public Integrator {
+class AdaptiveStep : public Stepper, protected Formula {
  protected:
   // Errors are of order h^(error_order + 1). States between steps are interpolated through
   // `instants` ends of steps (three to most_instants). If `instants` is 0, each is the end of
@@ -42,8 +42,7 @@ class AdaptiveStep : public Integrator {
     std::size_t instants;
     bool gives_acceleration = false;
   };
-  AdaptiveStep(const Method& method, const System& system, const Options& options,
-               const Accuracy& accuracy);
+  AdaptiveStep(SystemRun& run, const Accuracy& accuracy);
 
   // Computes q and v into `next`, a step h [s] after `now`, and estimates of their errors (n). If
   // the outcome is not reached_end, or a result is not finite, a smaller step is tried; if there is
@@ -57,24 +56,26 @@ class AdaptiveStep : public Integrator {
 
   // An override must call this.
   void start(const State& state) override;
-  // a = M^-1 f(q); counted.
-  void acceleration(const Vec& q, MutableVec a);
+  // a = M^-1 f; counted.
+  void acceleration(const At& at, MutableVec a);
 
  private:
-  Outcome run_to(State& state, double t_stop) final;
+  bool has_passed(double t) final;
+  Outcome step(double t_stop) final;
+  Outcome show(double t, State& state) final;
+  void show_last(State& state) final;
   // The latest accepted instant, or the one `before` instants earlier.
   Instant& last(std::size_t before = 0) {
     return instants_[(newest_ + instants_.size() - before) % instants_.size()];
   }
   bool can_show(double t);
-  Outcome show(double t, State& state);
   // Whether the polynomial through the instants follows the motion after `from`, one of them.
   bool is_trusted(std::span<const Instant* const> instants, const Instant& from);
   // The state at t by separate steps from that instant.
   Outcome step_aside(const Instant& from, double t, State& state);
   // Sets the acceleration at the end of an attempt unless the attempt has done so.
   void complete(Instant& next) {
-    if (!accuracy_.gives_acceleration) acceleration(next.state.q, next.a);
+    if (!accuracy_.gives_acceleration) acceleration({next.state.t, next.state.q}, next.a);
   }
   double factor_after(double error) const;
   double first_step();

@@ -67,7 +67,7 @@ void DeferredCorrection::compute(const Vec& q, const Vec& v, const Vec& g0, doub
         add_scaled(d_.col(j - 1), 1, e_.col(j), d_.col(j));
       }
       add_scaled(q_, 1, d_.col(j), q_);
-      acceleration(q_, g_.col(j + 1));
+      acceleration(static_cast<double>(j + 1) * h, q_, g_.col(j + 1));
     }
   }
   v_.col(0) = v;

@@ -30,9 +30,9 @@ class DeferredCorrection {
  public:
   DeferredCorrection(Index steps, Index n);
 
-  // Computes the steps of h [s] from q and v (n); g0 = g(q). acceleration(q, g) computes g(q). It
-  // is called N times a sweep, last at q_N.
-  using Acceleration = std::function<void(const Vec& q, MutableVec g)>;
+  // Computes the steps of h [s] from q and v (n); g0 = g(q). acceleration(t, q, g) computes
+  // g(q), t [s] after the start. It is called N times a sweep, last at q_N.
+  using Acceleration = std::function<void(double t, const Vec& q, MutableVec g)>;
   void compute(const Vec& q, const Vec& v, const Vec& g0, double h, int sweeps,
                const Acceleration& acceleration);
 

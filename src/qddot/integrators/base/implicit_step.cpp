@@ -25,37 +25,37 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
-ImplicitStep::ImplicitStep(const Method& method, const System& system, const Options& options,
-                           double solve_tolerance)
-    : FixedStep(method, system, options),
-      free_(system.size()),
-      u_(system.size()),
-      tolerance_(options.solve_tolerance > 0 ? options.solve_tolerance : solve_tolerance),
-      kinks_(capability<Kinks>(system)),
-      pieces_(capability<PiecewiseLinear>(system)),
-      x_(system.size()),
-      f_(system.size()),
-      r_(system.size()),
-      p_(system.size()),
-      before_(system.size()),
-      start_(system.size()),
-      k_(system.stiffness_pattern()),
-      matrix_(system, options.solver) {
+ImplicitStep::ImplicitStep(SystemRun& run, double solve_tolerance)
+    : Formula(run),
+      free_(system().size()),
+      u_(system().size()),
+      tolerance_(options().solve_tolerance > 0 ? options().solve_tolerance : solve_tolerance),
+      kinks_(system().kinks()),
+      pieces_(system().pieces()),
+      x_(system().size()),
+      f_(system().size()),
+      r_(system().size()),
+      p_(system().size()),
+      before_(system().size()),
+      start_(system().size()),
+      k_(system().stiffness_pattern()),
+      matrix_(system(), options().solver) {
   matrix_.set_tolerance(linear_share * tolerance_);
-  if (kinks_ && kinks_->kinks() == 0) kinks_ = nullptr;
+  if (kinks_ && kinks_->kink_count() == 0) kinks_ = nullptr;
   if (!kinks_) return;
-  length_.resize(kinks_->kinks());
-  other_length_.resize(kinks_->kinks());
+  length_.resize(kinks_->kink_count());
+  other_length_.resize(kinks_->kink_count());
 }
 
-void ImplicitStep::start(const State&) {
+void ImplicitStep::begin(const State& state, State& x) {
+  x = state;
   factorized_s_ = last_missed_ = 0;
   last_rate_ = 1;
   compression_.start();
 }
 
-void ImplicitStep::acceleration(const Vec& q, Vec& a) {
-  force(q, a);
+void ImplicitStep::acceleration(const At& at, Vec& a) {
+  force(at, a);
   a.array() /= system().mass().array();
 }
 
@@ -74,7 +74,8 @@ struct ImplicitStep::Iteration {
   }
 };
 
-Outcome ImplicitStep::solve_stage(const Vec& q, double s) {
+Outcome ImplicitStep::solve_stage(const Vec& q, double t, double s) {
+  t_ = t;
   Iteration now{.wants_factors = s != factorized_s_};
   start_ = u_;
   residual(q, s);
@@ -173,13 +174,13 @@ void ImplicitStep::residual(const Vec& q, double s) {
 
 void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
   x_ = q + u;
-  force(x_, f);
+  force({t_, x_}, f);
 }
 
 void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                    SymmetricMatrix& k) {
   x_ = q + u;
-  weighted_stiffness(x_, compression_weight, k);
+  run_.counted().weighted_stiffness({t_, x_}, compression_weight, k);
 }
 
 Outcome ImplicitStep::factorize(const Vec& q, double s) {
@@ -195,7 +196,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
     is_finite = k_.coeffs().allFinite();
     if (!is_finite) return true;  // factors cannot make it positive
     ++counts().factorizations;
-    const Stopwatch watch(seconds(), &Seconds::factorization);
+    const Stopwatch watch(clock(), &Seconds::factorization);
     return matrix_.factorize_positive(1, s, k_);
   });
   if (!is_finite) return Outcome::not_finite;
@@ -206,7 +207,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
 
 // p = -(M - s K)^-1 r.
 Outcome ImplicitStep::correction() {
-  const Stopwatch watch(seconds(), &Seconds::solve);
+  const Stopwatch watch(clock(), &Seconds::solve);
   ++counts().solves;
   ++counts().newton_iterations;
   if (const Outcome outcome = check_solve(matrix_.solve(r_, p_)); outcome != Outcome::reached_end) {
@@ -248,7 +249,7 @@ double ImplicitStep::search(const Vec& q, double s) {
 
 double ImplicitStep::objective(const Vec& q, double s) {
   x_ = q + u_;
-  const double potential = system().potential(x_);
+  const double potential = system().potential({t_, x_});
   x_ = u_ - free_;
   return system().kinetic(x_) + s * potential;
 }

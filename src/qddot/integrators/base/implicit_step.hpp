@@ -2,7 +2,7 @@
 
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/integrators/base/compression.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/model/capabilities.hpp"
 
 namespace qddot {
@@ -19,25 +19,28 @@ namespace qddot {
 // a part of the compression is kept if M - s K is not positive definite (see compression.hpp). So
 // directions descend, and a step that does not decrease g is halved until it does. A system without
 // V has no g, and its steps are whole.
-class ImplicitStep : public FixedStep {
+class ImplicitStep : public Formula {
  public:
   // Default parts of a prediction's error that a stage's solve leaves. Less gains nothing for most
   // methods, but invariants are conserved only as well as stages are solved.
   static constexpr double usual_tolerance = 1e-4, tolerance_for_invariants = 1e-9;
 
   // `solve_tolerance`: used if the options give none.
-  ImplicitStep(const Method& method, const System& system, const Options& options,
-               double solve_tolerance = usual_tolerance);
+  explicit ImplicitStep(SystemRun& run, double solve_tolerance = usual_tolerance);
+  virtual ~ImplicitStep() = default;
+
+  // Forgets all factors; a method that hides this calls it.
+  void begin(const State& state, State& x);
 
  protected:
-  // Solves the stage at q = q_n for u_, which holds its prediction, with u* in free_. The remaining
-  // error is the tolerance times the prediction's error, which is of the size of the step's own
-  // error. Returns reached_end, newton_failed, indefinite_matrix, not_finite or over_budget.
-  Outcome solve_stage(const Vec& q, double s);
+  // Solves the stage at q = q_n and time t [s] for u_, which holds its prediction, with u* in
+  // free_. The remaining error is the tolerance times the prediction's error, which is of the size
+  // of the step's own error. Returns reached_end, newton_failed, indefinite_matrix, not_finite or
+  // over_budget.
+  Outcome solve_stage(const Vec& q, double t, double s);
 
-  void start(const State&) override;
-  // a = M^-1 f(q) [m/s^2]; for methods that begin with it.
-  void acceleration(const Vec& q, Vec& a);
+  // a = M^-1 f [m/s^2]; for methods that begin with it.
+  void acceleration(const At& at, Vec& a);
 
   Vec free_, u_;  // u* and u
 
@@ -70,6 +73,7 @@ class ImplicitStep : public FixedStep {
   double objective(const Vec& q, double s);
 
   const double tolerance_;
+  double t_ = 0;                   // of the stage [s]
   const Kinks* kinks_;             // nullptr if f has no kinks
   const PiecewiseLinear* pieces_;  // nullptr if a constant K implies a linear f
   Vec x_, f_, r_, p_, before_, start_, length_, other_length_;

@@ -11,19 +11,19 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size) {
   return half;
 }
 
-KickDrift::KickDrift(const Method& method, const System& system, const Options& options,
-                     const Splitting& splitting)
-    : FixedStep(method, system, options),
+KickDrift::KickDrift(SystemRun& run, const Splitting& splitting)
+    : Formula(run),
       splitting_(splitting),
       kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
-      q_(options.compensated, system.size()),
-      v_(options.compensated, system.size()),
-      f_(system.size()) {}
+      q_(options().compensated, system().size()),
+      v_(options().compensated, system().size()),
+      f_(system().size()) {}
 
-void KickDrift::start(const State& state) {
+void KickDrift::begin(const State& state, State& x) {
+  x = state;
   q_.restart();
   v_.restart();
-  if (kicks_first_) force(state.q, f_);
+  if (kicks_first_) force({state.t, state.q}, f_);
 }
 
 void KickDrift::kick(double size, State& state) {
@@ -36,10 +36,12 @@ Outcome KickDrift::step(const State& now, double h, State& next) {
   const auto& [order, kicks, drifts] = splitting_;
   next.q = now.q;
   next.v = now.v;
+  double t = now.t;
   for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
     if (kicks_first_) kick(kicks[i] * h, next);
     drift(drifts[i] * h, next);
-    force(next.q, f_);
+    t += drifts[i] * h;
+    force({t, next.q}, f_);
     if (!kicks_first_) kick(kicks[i] * h, next);
   }
   if (kicks_first_) {
@@ -48,6 +50,10 @@ Outcome KickDrift::step(const State& now, double h, State& next) {
     drift(drifts.back() * h, next);
   }
   return Outcome::reached_end;
+}
+
+std::unique_ptr<Stepper> create_splitting(SystemRun& run) {
+  return std::make_unique<FixedSteps<KickDrift>>(run, *run.method().splitting);
 }
 
 }  // namespace qddot

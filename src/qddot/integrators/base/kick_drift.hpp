@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "qddot/integrators/base/compensated_sum.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 
 namespace qddot {
 
@@ -21,16 +21,14 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 
 // The steps of a splitting. If a kick is first, the last force of a step is the first of the next:
 // one evaluation for each drift, and one at the start. Otherwise each kick takes one evaluation.
-class KickDrift final : public FixedStep {
+class KickDrift final : public Formula {
  public:
-  KickDrift(const Method& method, const System& system, const Options& options,
-            const Splitting& splitting);
+  KickDrift(SystemRun& run, const Splitting& splitting);
 
-  const Splitting& table() const { return splitting_; }
+  void begin(const State& state, State& x);
+  Outcome step(const State& now, double h, State& next);
 
  private:
-  void start(const State& state) override;
-  Outcome step(const State& now, double h, State& next) override;
   void kick(double size, State& state);
   void drift(double size, State& state);
 
@@ -40,11 +38,7 @@ class KickDrift final : public FixedStep {
   Vec f_;  // at the last kick, or at the next one
 };
 
-// Makes the integrator of a splitting; for Method::make.
-template <const Splitting& (*splitting)()>
-std::unique_ptr<Integrator> create_splitting(const Method& method, const System& system,
-                                             const Options& options) {
-  return std::make_unique<KickDrift>(method, system, options, splitting());
-}
+// Makes the stepper of Method::splitting; for Method::make.
+std::unique_ptr<Stepper> create_splitting(SystemRun& run);
 
 }  // namespace qddot

@@ -75,8 +75,8 @@ bool is_positive(Bernstein b, int left = divisions) {
 
 }  // namespace
 
-KinkSearch::KinkSearch(const System& system) : kinks_(capability<Kinks>(system)) {
-  const Index n = kinks_ ? kinks_->kinks() : 0;
+KinkSearch::KinkSearch(const System& system) : kinks_(system.kinks()) {
+  const Index n = kinks_ ? kinks_->kink_count() : 0;
   for (int end : {0, 1}) {
     length_[end].resize(n);
     rate_[end].resize(n);

@@ -10,20 +10,21 @@ constexpr int most_shortenings = 60;
 
 }  // namespace
 
-LocalGlobal::LocalGlobal(const Method& method, const System& system, const Options& options)
-    : FixedStep(method, system, options),
-      iterations_(options.iterations > 0 ? options.iterations : usual_iterations),
-      descends_(capability<Laplacian>(system)->bounds_stiffness()),
-      matrix_(system) {}
+LocalGlobal::LocalGlobal(SystemRun& run)
+    : Formula(run),
+      iterations_(options().iterations > 0 ? options().iterations : usual_iterations),
+      descends_(system().laplacian()->bounds_stiffness()),
+      matrix_(system()) {}
 
 Outcome LocalGlobal::step(const State& now, double h, State& next) {
   if (h != factorized_h_) {
     ++counts().factorizations;
-    const Stopwatch watch(seconds(), &Seconds::factorization);
+    const Stopwatch watch(clock(), &Seconds::factorization);
     if (!matrix_.factorize(h * h)) return Outcome::indefinite_matrix;
     factorized_h_ = h;
   }
   now_ = &now;
+  t_ = next.t;
   h_ = h;
   next.v = now.v;
   begin_step();
@@ -38,13 +39,13 @@ Outcome LocalGlobal::step(const State& now, double h, State& next) {
 
 void LocalGlobal::gradient(const Vec& v, Vec& r) {
   q_ = now_->q + h_ * v;
-  force(q_, f_);
+  force({t_, q_}, f_);
   r = system().mass().cwiseProduct(v - now_->v) - h_ * f_;
 }
 
 void LocalGlobal::direction(const Vec& r, Vec& p) {
   ++counts().solves;
-  const Stopwatch watch(seconds(), &Seconds::solve);
+  const Stopwatch watch(clock(), &Seconds::solve);
   matrix_.solve(r, p);
   is_finite_ = std::isfinite(p.sum());
 }
@@ -53,7 +54,7 @@ double LocalGlobal::objective(const Vec& v) {
   q_ = v - now_->v;
   const double kinetic = system().kinetic(q_);
   q_ = now_->q + h_ * v;
-  return kinetic + system().potential(q_);
+  return kinetic + system().potential({t_, q_});
 }
 
 void LocalGlobal::search(Vec& v, const Vec& p, double slope, double& g) {

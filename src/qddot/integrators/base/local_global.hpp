@@ -1,7 +1,7 @@
 #pragma once
 
 #include "qddot/algebra/laplacian_mass.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 
 namespace qddot {
 
@@ -13,9 +13,16 @@ namespace qddot {
 // The iterations start from the inertial prediction v = v_n. One iteration of local_global is
 // v = v - p; other methods use the same r and p in their own ways. The matrix is factorised once a
 // step size.
-class LocalGlobal : public FixedStep {
+class LocalGlobal : public Formula {
  public:
-  LocalGlobal(const Method& method, const System& system, const Options& options);
+  explicit LocalGlobal(SystemRun& run);
+  virtual ~LocalGlobal() = default;
+
+  void begin(const State& state, State& x) {
+    x = state;
+    factorized_h_ = 0;
+  }
+  Outcome step(const State& now, double h, State& next);
 
  protected:
   // Called before the first iteration of each step.
@@ -38,15 +45,12 @@ class LocalGlobal : public FixedStep {
   void plain_step(Vec& v, const Vec& r, const Vec& p);
 
  private:
-  void start(const State&) final { factorized_h_ = 0; }
-  Outcome step(const State& now, double h, State& next) final;
-
   int iterations_;
   bool descends_;
   LaplacianMass matrix_;
-  const State* now_ = nullptr;  // the start of the present step
-  double h_ = 0, factorized_h_ = 0;
-  bool is_finite_ = true;  // whether the last direction is finite
+  const State* now_ = nullptr;               // the start of the present step
+  double t_ = 0, h_ = 0, factorized_h_ = 0;  // t_: of its end [s]
+  bool is_finite_ = true;                    // whether the last direction is finite
   Vec q_{system().size()}, f_{system().size()}, trial_{system().size()};
 };
 

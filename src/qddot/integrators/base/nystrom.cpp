@@ -12,16 +12,14 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
 
 }  // namespace
 
-Nystrom::Nystrom(const Method& method, const System& system, const Options& options,
-                 const NystromPair& pair, std::size_t instants)
-    : AdaptiveStep(method, system, options,
-                   {pair.lower_order, instants, pair.is_first_same_as_last()}),
+Nystrom::Nystrom(SystemRun& run, const NystromPair& pair, std::size_t instants)
+    : AdaptiveStep(run, {pair.lower_order, instants, pair.is_first_same_as_last()}),
       pair_(pair),
       error_b_(difference(pair.b, pair.lower_b)),
       error_b_prime_(difference(pair.b_prime, pair.lower_b_prime)),
       is_first_same_as_last_(pair.is_first_same_as_last()),
-      stages_(pair, system.size()),
-      w_max_(system) {}
+      stages_(pair, system().size()),
+      w_max_(system()) {}
 
 void Nystrom::start(const State& state) {
   AdaptiveStep::start(state);
@@ -29,15 +27,17 @@ void Nystrom::start(const State& state) {
 }
 
 double Nystrom::longest_step(const Instant& now) {
-  const double w_max =
-      w_max_.at(counts().steps, [&](SymmetricMatrix& k) { stiffness(now.state.q, k); });
+  const double w_max = w_max_.at(counts().steps, [&](SymmetricMatrix& k) {
+    stiffness({now.state.t, now.state.q}, k);
+  });
   return w_max > 0 ? pair_.stable_hw / w_max : INFINITY;
 }
 
 Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) {
   const Vec &q = now.state.q, &v = now.state.v;
-  stages_.compute(q, v, now.a, h,
-                  [this](const Vec& stage, MutableVec k) { acceleration(stage, k); });
+  stages_.compute(q, v, now.a, h, [&](double t, const Vec& stage, MutableVec k) {
+    acceleration({now.state.t + t, stage}, k);
+  });
   const Eigen::MatrixXd& k = stages_.k();
   if (is_first_same_as_last_) next.a = k.rightCols<1>();
   add_combination(q, h, v, h * h, k, pair_.b, next.state.q);

@@ -15,10 +15,7 @@ namespace qddot {
 // test is the only limit.
 class Nystrom final : public AdaptiveStep {
  public:
-  Nystrom(const Method& method, const System& system, const Options& options,
-          const NystromPair& pair, std::size_t instants);
-
-  const NystromPair& table() const { return pair_; }
+  Nystrom(SystemRun& run, const NystromPair& pair, std::size_t instants);
 
  private:
   void start(const State& state) override;

@@ -34,7 +34,7 @@ class NystromStages {
       : pair_(pair), k_(n, std::ssize(pair.b)), stage_(n) {}
 
   // Computes the stages of a step h [s] from q and v, where the acceleration is a;
-  // acceleration(q, k) computes another.
+  // acceleration(t, q, k) computes another, t [s] after the start of the step.
   template <class Acceleration>
   void compute(const Vec& q, const Vec& v, const Vec& a, double h,
                const Acceleration& acceleration) {
@@ -42,7 +42,7 @@ class NystromStages {
     for (Index i = 1; i < k_.cols(); ++i) {
       const auto row = static_cast<std::size_t>(i);
       add_combination(q, pair_.c[row] * h, v, h * h, k_, pair_.a[row], stage_);
-      acceleration(stage_, k_.col(i));
+      acceleration(pair_.c[row] * h, stage_, k_.col(i));
     }
   }
   const Eigen::MatrixXd& k() const { return k_; }  // n x s

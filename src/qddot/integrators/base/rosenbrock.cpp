@@ -23,17 +23,16 @@ Eigen::Map<const Vec> as_vec(const std::vector<double>& row) {
 
 }  // namespace
 
-Rosenbrock::Rosenbrock(const Method& method, const System& system, const Options& options,
-                       const RosenbrockTable& table, int error_order)
-    : AdaptiveStep(method, system, options, {error_order, instants}),
+Rosenbrock::Rosenbrock(SystemRun& run, const RosenbrockTable& table, int error_order)
+    : AdaptiveStep(run, {error_order, instants}),
       table_(table),
-      u_q_(system.size(), std::ssize(table.a)),
-      u_v_(system.size(), std::ssize(table.a)),
-      r_(system.size()),
-      s_(system.size()),
-      x_(system.size()),
-      k_(system.stiffness_pattern()),
-      matrix_(system, options.solver) {}
+      u_q_(system().size(), std::ssize(table.a)),
+      u_v_(system().size(), std::ssize(table.a)),
+      r_(system().size()),
+      s_(system().size()),
+      x_(system().size()),
+      k_(system().stiffness_pattern()),
+      matrix_(system(), options().solver) {}
 
 // Let A = M - g^2 K, A U_q = b = M u, and e the error of U_q; U_v = (U_q - r)/g errs by e/g. Then
 // |e|_M <= |e|_A <= tau |b|_{A^-1} <= tau |u|_M if A >= M. So tau = share g |w|_M / |u|_M leaves
@@ -81,7 +80,7 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
     x_ = r_ + g * s_;
     matrix_.set_tolerance(tolerance(now.state, g, x_));
     s_ = system().mass().cwiseProduct(x_);
-    const Stopwatch watch(seconds(), &Seconds::solve);
+    const Stopwatch watch(clock(), &Seconds::solve);
     ++counts().solves;
     if (const Outcome outcome = check_solve(matrix_.solve(s_, x_));
         outcome != Outcome::reached_end) {
@@ -104,7 +103,7 @@ bool Rosenbrock::factorize(const Vec& q, double g) {
   has_k_ = true;
   factorized_g_ = g;
   ++counts().factorizations;
-  const Stopwatch watch(seconds(), &Seconds::factorization);
+  const Stopwatch watch(clock(), &Seconds::factorization);
   const auto definiteness = matrix_.factorize(1, g * g, k_);
   if (definiteness == EffectiveMass::Definiteness::indefinite) {
     ++counts().indefinite_factorizations;

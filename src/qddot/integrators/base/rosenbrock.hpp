@@ -22,8 +22,7 @@ struct RosenbrockTable {
 // A step takes one factorisation, whether or not the matrix is positive definite.
 class Rosenbrock final : public AdaptiveStep {
  public:
-  Rosenbrock(const Method& method, const System& system, const Options& options,
-             const RosenbrockTable& table, int error_order);
+  Rosenbrock(SystemRun& run, const RosenbrockTable& table, int error_order);
 
  private:
   Outcome attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) override;

@@ -22,134 +22,148 @@ std::vector<double> weights_of_history(int first, int count, const std::vector<d
 
 }  // namespace
 
-SymmetricMultistep::SymmetricMultistep(const Method& method, const System& system,
-                                       const Options& options, const SymmetricFormula& formula)
-    : FixedStep(method, system, options),
+SymmetricMultistep::SymmetricMultistep(SystemRun& run, const SymmetricFormula& formula)
+    : Formula(run),
       formula_(formula),
       r_(formula.cofactor()),
       b_(formula.all_beta()),
       with_force_(weights_of_history(0, formula.steps - 1, r_)),
       without_(weights_of_history(1, formula.steps - 2, r_)),
       symmetric_start_(symmetric_start(formula)),
-      stages_(formula.single_step(), system.size()),
-      first_(formula.steps - 1, system.size()),
-      u_(2 * static_cast<std::size_t>(formula.steps) - 3, Vec(system.size())),
-      d_(system.size()),
-      d_next_(system.size()),
-      f_(system.size()),
-      a_(system.size()) {
+      stages_(formula.single_step(), system().size()),
+      first_(formula.steps - 1, system().size()),
+      u_(2 * static_cast<std::size_t>(formula.steps) - 3, Vec(system().size())),
+      f_(system().size()),
+      a_(system().size()) {
   past_.reserve(u_.size());
   weights_.reserve(u_.size());
 }
 
-void SymmetricMultistep::start(const State&) {
+void SymmetricMultistep::begin(const State& state, X& x) {
   h_ = options().step_size;
   h2_by_mass_ = h_ * h_ * system().mass().cwiseInverse();
-  begun_ = 0;
-  force_is_known_ = has_history_ = false;
+  static_cast<State&>(x) = state;
+  x.d.resize(state.q.size());
+  x.f.resize(state.q.size());
+  x.begun = 0;
+  x.newest = 0;
+  x.has_force = x.has_history = false;
+  x.has_velocity = true;
+  state_ = state;
 }
 
-void SymmetricMultistep::evaluate(const Vec& q) {
-  if (!force_is_known_) force(q, f_);
-  force_is_known_ = true;
+void SymmetricMultistep::evaluate(X& x) {
+  if (!x.has_force) force({x.t, x.q}, x.f);
+  x.has_force = true;
 }
 
-void SymmetricMultistep::single_step(const State& now, double h, State& next) {
+void SymmetricMultistep::single_step(X& x, double h, X& next) {
   const NystromPair& pair = formula_.single_step();
   const Vec& mass = system().mass();
-  evaluate(now.q);
-  divide(f_, mass, a_);
-  stages_.compute(now.q, now.v, a_, h, [&](const Vec& stage, MutableVec k) {
-    force(stage, f_);
+  show(x, true, state_);
+  evaluate(x);
+  divide(x.f, mass, a_);
+  stages_.compute(state_.q, state_.v, a_, h, [&](double t, const Vec& stage, MutableVec k) {
+    force({x.t + t, stage}, f_);
     divide(f_, mass, k);
   });
-  force_is_known_ = false;
   const Eigen::MatrixXd& k = stages_.k();
-  add_combination(now.q, h, now.v, h * h, k, pair.b, next.q);
-  add_combination(now.v, h, k, pair.b_prime, next.v);
+  add_combination(state_.q, h, state_.v, h * h, k, pair.b, next.q);
+  add_combination(state_.v, h, k, pair.b_prime, next.v);
 }
 
-void SymmetricMultistep::begin_from(const State& now) {
+void SymmetricMultistep::begin_from(X& x) {
   const Vec& mass = system().mass();
-  evaluate(now.q);
-  divide(f_, mass, a_);
-  first_.compute(now.q, now.v, a_, h_, formula_.steps / 2, [&](const Vec& q, MutableVec g) {
-    force(q, f_);
+  evaluate(x);
+  divide(x.f, mass, a_);
+  first_.compute(x.q, x.v, a_, h_, formula_.steps / 2, [&](double t, const Vec& q, MutableVec g) {
+    force({x.t + t, q}, f_);
     divide(f_, mass, g);
   });
-  force_is_known_ = false;
 }
 
-void SymmetricMultistep::begin_history() {
+void SymmetricMultistep::begin_history(X& x) {
   const std::ptrdiff_t m = formula_.steps - 2;
   const auto& [of_differences, of_forces] = symmetric_start_;
   // u_m, ..., u_1 and u_0, ..., u_{1-m} are those of 1, ..., 2m steps ago.
-  newest_ = 0;
+  x.newest = 0;
   const auto begin_sum = [&] {
     past_.clear();
     weights_.clear();
   };
-  const auto add = [&](double weight, const double* x) {
-    past_.push_back(x);
+  const auto add = [&](double weight, const double* z) {
+    past_.push_back(z);
     weights_.push_back(weight);
   };
   for (std::ptrdiff_t l = 0; l < m; ++l) {
     begin_sum();
     for (std::ptrdiff_t n = 0; n < m; ++n) add(of_differences(l, n), first_.e(n + 1).data());
     for (std::ptrdiff_t n = 0; n < m; ++n) add(of_forces(l, n) * h_ * h_, first_.g(n + 1).data());
-    set_combination(past_, weights_.data(), u(m + 1 + l));
+    set_combination(past_, weights_.data(), u(x, m + 1 + l));
   }
   for (std::ptrdiff_t n = 1; n <= m; ++n) {
     begin_sum();
     add(h_ * h_, first_.g(n).data());
     for (std::ptrdiff_t i = 1; i <= m; ++i) {
-      add(-r_[static_cast<std::size_t>(i)], u(m + 1 - n + i).data());
+      add(-r_[static_cast<std::size_t>(i)], u(x, m + 1 - n + i).data());
     }
-    set_combination(past_, weights_.data(), u(m + 1 - n));
+    set_combination(past_, weights_.data(), u(x, m + 1 - n));
   }
-  d_ = first_.d(m);
+  x.d = first_.d(m);
+  x.f = f_;  // the last of begin_from()
+  x.has_history = x.has_force = true;
 }
 
-void SymmetricMultistep::accepted() {
-  force_is_known_ = false;
-  if (has_history_) {
-    newest_ = (newest_ + std::ssize(u_) - 1) % std::ssize(u_);
-    std::swap(d_, d_next_);
-  } else if (++begun_ == first_.steps()) {
-    begin_history();
-    has_history_ = force_is_known_ = true;  // the last of begin_from()
-  }
-}
-
-void SymmetricMultistep::complete(State& now, bool may_evaluate) {
-  if (may_evaluate) evaluate(now.q);
+void SymmetricMultistep::show(X& x, bool may_evaluate, State& state) {
+  state.q = x.q;
+  state.v = x.v;
+  if (x.has_velocity) return;
+  if (may_evaluate) evaluate(x);
   const std::vector<double>& weights = may_evaluate ? with_force_ : without_;
   past_.clear();
-  for (std::ptrdiff_t ago = 1; ago < std::ssize(weights); ++ago) past_.push_back(u(ago).data());
-  set_combination(past_, weights.data() + 1, now.v);
-  now.v += d_;
-  if (may_evaluate) now.v += weights[0] * h2_by_mass_.cwiseProduct(f_);
-  now.v /= h_;
+  for (std::ptrdiff_t ago = 1; ago < std::ssize(weights); ++ago) past_.push_back(u(x, ago).data());
+  set_combination(past_, weights.data() + 1, x.v);
+  x.v += x.d;
+  if (may_evaluate) x.v += weights[0] * h2_by_mass_.cwiseProduct(x.f);
+  x.v /= h_;
+  x.has_velocity = true;
+  state.v = x.v;
 }
 
-double SymmetricMultistep::squared_speed(const State&) { return squared_norm(d_next_) / (h_ * h_); }
+double SymmetricMultistep::squared_speed(const X& next) {
+  return next.has_velocity ? squared_norm(next.v) : squared_norm(next.d) / (h_ * h_);
+}
 
-Outcome SymmetricMultistep::step(const State& now, double h, State& next) {
+Outcome SymmetricMultistep::step(X& x, double h, X& next) {
+  next.has_force = false;
   if (h != h_) {
-    single_step(now, h, next);
-  } else if (!has_history_) {
-    if (begun_ == 0) begin_from(now);
-    next.q = now.q + first_.d(begun_);
-    next.v = first_.v(begun_ + 1);
+    single_step(x, h, next);
+    next.has_history = false;
+    next.begun = 0;
+    next.has_velocity = true;
+  } else if (!x.has_history) {
+    if (x.begun == 0) begin_from(x);
+    next.q = x.q + first_.d(x.begun);
+    next.v = first_.v(x.begun + 1);
+    next.begun = x.begun + 1;
+    next.has_velocity = true;
+    next.has_history = false;
+    if (next.begun == first_.steps()) begin_history(next);
   } else {
-    evaluate(now.q);
+    evaluate(x);
     past_.clear();
-    for (std::ptrdiff_t ago = 0; ago + 1 < formula_.steps; ++ago) past_.push_back(u(ago).data());
-    step_by_history({past_, r_.data(), b_.data()}, f_, h2_by_mass_, now.q, d_, u(0), d_next_,
+    for (std::ptrdiff_t ago = 0; ago + 1 < formula_.steps; ++ago) past_.push_back(u(x, ago).data());
+    step_by_history({past_, r_.data(), b_.data()}, x.f, h2_by_mass_, x.q, x.d, u(x, 0), next.d,
                     next.q);
-    leave_incomplete();
+    next.newest = (x.newest + std::ssize(u_) - 1) % std::ssize(u_);
+    next.has_history = true;
+    next.has_velocity = false;
   }
   return Outcome::reached_end;
+}
+
+std::unique_ptr<Stepper> create_symmetric(SystemRun& run) {
+  return std::make_unique<FixedSteps<SymmetricMultistep>>(run, *run.method().symmetric_formula);
 }
 
 }  // namespace qddot

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "qddot/integrators/base/deferred_correction.hpp"
-#include "qddot/integrators/base/fixed_step.hpp"
+#include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/base/symmetric_formula.hpp"
 
 namespace qddot {
@@ -18,27 +18,34 @@ namespace qddot {
 // together, by k/2 sweeps of deferred correction: k/2 (k - 1) forces. A Nystrom pair takes a last
 // step of another length and steps to times between steps. Velocities are computed only when they
 // are asked for.
-class SymmetricMultistep final : public FixedStep {
+class SymmetricMultistep final : public Formula {
  public:
-  SymmetricMultistep(const Method& method, const System& system, const Options& options,
-                     const SymmetricFormula& formula);
+  struct X : State {
+    Vec d, f;                   // the last difference; the force at q
+    Index begun = 0;            // steps since the start, k - 1 at most
+    std::ptrdiff_t newest = 0;  // the place in the history of the next u
+    bool has_history = false;   // whether k - 1 steps are taken
+    bool has_force = false;     // whether f is known
+    bool has_velocity = false;  // whether v is known
+  };
+
+  SymmetricMultistep(SystemRun& run, const SymmetricFormula& formula);
+
+  void begin(const State& state, X& x);
+  Outcome step(X& x, double h, X& next);
+  void show(X& x, bool may_evaluate, State& state);
+  double squared_speed(const X& next);
 
  private:
-  void start(const State& state) override;
-  Outcome step(const State& now, double h, State& next) override;
-  void accepted() override;
-  void complete(State& now, bool may_evaluate) override;
-  double squared_speed(const State& next) override;
-
-  void single_step(const State& now, double h, State& next);
+  void single_step(X& x, double h, X& next);
   // Computes the first k - 1 steps.
-  void begin_from(const State& now);
+  void begin_from(X& x);
   // Begins the history after them.
-  void begin_history();
-  void evaluate(const Vec& q);
-  // u of so many steps ago: 1 is that of the last step.
-  Vec& u(std::ptrdiff_t ago) {
-    return u_[static_cast<std::size_t>((newest_ + ago) % std::ssize(u_))];
+  void begin_history(X& x);
+  void evaluate(X& x);
+  // u of so many steps before x: 1 is that of the last step.
+  Vec& u(const X& x, std::ptrdiff_t ago) {
+    return u_[static_cast<std::size_t>((x.newest + ago) % std::ssize(u_))];
   }
 
   const SymmetricFormula& formula_;
@@ -49,22 +56,15 @@ class SymmetricMultistep final : public FixedStep {
   Vec h2_by_mass_;
   double h_ = 0;  // of all steps but the last [s]
   DeferredCorrection first_;
-  Index begun_ = 0;            // steps since the start, k - 1 at most
-  std::vector<Vec> u_;         // a ring buffer, with a place for the next
-  std::ptrdiff_t newest_ = 0;  // the place of the next
-  Vec d_, d_next_, f_, a_;
-  bool force_is_known_ = false;  // whether f_ is the force at the history's last q
-  bool has_history_ = false;
+  std::vector<Vec> u_;  // a ring buffer, with a place for the next
+  Vec f_, a_;
+  State state_;
   std::vector<const double*> past_;
   std::vector<double> weights_;
 };
 
-// Makes the integrator of a formula; for Method::make.
-template <const SymmetricFormula& (*formula)()>
-std::unique_ptr<Integrator> create_symmetric(const Method& method, const System& system,
-                                             const Options& options) {
-  return std::make_unique<SymmetricMultistep>(method, system, options, formula());
-}
+// Makes the stepper of Method::symmetric_formula; for Method::make.
+std::unique_ptr<Stepper> create_symmetric(SystemRun& run);
 // The roots of a formula; for Method::recurrence_roots.
 template <const SymmetricFormula& (*formula)()>
 std::vector<std::complex<double>> symmetric_roots(double h_omega) {

@@ -28,7 +28,7 @@ Runs::Runs(const ReducedScene& model, double until, AccuracyOf of, double second
     : limit_(seconds),
       bound_of_w_(frequency_bound(model.system(), model.initial().q)),
       steps_of_verlet_(std::isfinite(bound_of_w_) ? std::max(1.0, until * bound_of_w_ / 2) : 1),
-      parts_(static_cast<double>(std::max<std::size_t>(1, blocks_of(model.system()).size()))),
+      parts_(static_cast<double>(std::max<std::size_t>(1, model.system().blocks().size()))),
       work_of_force_(rules.call * parts_ + static_cast<double>(model.system().size())),
       stage_(model, until, of, drawn, with_few_looks(rules, steps_of_verlet_, work_of_force_)) {}
 

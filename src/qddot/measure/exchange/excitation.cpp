@@ -24,11 +24,11 @@ constexpr double periods_of_mean = 40;
 double stiff_frequency(const System& system, const Vec& q) {
   double highest = 0;
   Index first = 0;
-  for (const auto& block : blocks_of(system)) {
+  for (const auto& block : system.blocks()) {
     highest = std::max(highest, stiff_frequency(*block, q.segment(first, block->size())));
     first += block->size();
   }
-  const Split* split = split_of(system);
+  const Split* split = system.split();
   if (!split || split->stiff_unknowns.empty()) return highest;
   const Vec own = q(split->stiff_unknowns);
   return std::max(highest, std::sqrt(highest_modes(*split->stiff_block, own, 1).squares[0]));

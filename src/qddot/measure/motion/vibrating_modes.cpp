@@ -67,10 +67,10 @@ double buckling_rate(const System& system, const Vec& q) {
 double resolved_frequency(const Method& method, const System& system, const Vec& q) {
   if (!method.asks(Need::split_forces) || method.is(Trait::implicit))
     return frequency_bound(system, q);
-  if (const Split* split = split_of(system)) return frequency_bound(*split->soft, q);
+  if (const Split* split = system.split()) return frequency_bound(*split->soft, q);
   double largest = 0;
   Index first = 0;
-  for (const auto& block : blocks_of(system)) {
+  for (const auto& block : system.blocks()) {
     const Vec own = q.segment(first, block->size());
     largest = std::max(largest, resolved_frequency(method, *block, own));
     first += block->size();

@@ -103,7 +103,7 @@ std::optional<Solution> composition(const ReducedScene& scene, const State& init
 std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
                                  const Scales& scales, double seconds) {
   const System& system = scene.system();
-  const auto parts = blocks_of(system);
+  const auto parts = system.blocks();
   Solution solution{.end = scene.initial(), .scales = scales, .knob = tolerance};
   solution.end.t = until;
   const Deadline deadline(seconds);

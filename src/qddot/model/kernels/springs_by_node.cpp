@@ -89,7 +89,7 @@ SpringTable SpringsByNode<D>::table() const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const {
+void SpringsByNode<D>::sum_forces(const VecView& q, const Vec& offset, MutableVec f) const {
   const SpringTable springs = table();
   for_slices(q, [&](const Positions& positions, int from, int end) {
     thread_local Vec memory;
@@ -99,7 +99,7 @@ void SpringsByNode<D>::sum_forces(const ConstVec& q, const Vec& offset, MutableV
 }
 
 template <int D>
-double SpringsByNode<D>::half_sum_energies(const ConstVec& q) const {
+double SpringsByNode<D>::half_sum_energies(const VecView& q) const {
   double sums[slice_rows] = {};
   kernels_->energy(table(), placed(q), sums, 0, slices_.count());
   double total = 0;
@@ -108,14 +108,14 @@ double SpringsByNode<D>::half_sum_energies(const ConstVec& q) const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_mean_forces(const ConstVec& a, const ConstVec& b, const Vec& offset,
+void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b, const Vec& offset,
                                        MutableVec f) const {
   kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset.data(), f.data(), 0,
                        slices_.count());
 }
 
 template <int D>
-Positions SpringsByNode<D>::placed(const ConstVec& q, int which) const {
+Positions SpringsByNode<D>::placed(const VecView& q, int which) const {
   const Positions positions = memory(which);
   kernels_->place(table(), q.data(), positions, 0, slices_.count());
   place_extras(positions);

@@ -33,18 +33,18 @@ class SpringsByNode {
   // It differs from a sum spring by spring by rounding only. It is the same to the last bit for any
   // number of threads, kind of roots and width of vectors (except v2, without fused products). q,
   // offset, f: n. May be called from any thread.
-  void sum_forces(const ConstVec& q, const Vec& offset, MutableVec f) const;
+  void sum_forces(const VecView& q, const Vec& offset, MutableVec f) const;
 
   // V of all springs [J], with springs to fixed points counted half; alike at every width of
   // vectors.
-  double half_sum_energies(const ConstVec& q) const;
+  double half_sum_energies(const VecView& q) const;
   // f = offset + the springs' discrete gradients between a and b (see DiscreteGradient).
-  void sum_mean_forces(const ConstVec& a, const ConstVec& b, const Vec& offset, MutableVec f) const;
+  void sum_mean_forces(const VecView& a, const VecView& b, const Vec& offset, MutableVec f) const;
 
   // Calls action(positions at q, from, end) for slices [from, end) until all are done, in several
   // OpenMP threads if there are enough springs. The calls must not depend on each other.
   template <class Action>
-  void for_slices(const ConstVec& q, const Action& action) const;
+  void for_slices(const VecView& q, const Action& action) const;
 
  private:
   struct Image {
@@ -57,7 +57,7 @@ class SpringsByNode {
   // Memory for all places: this thread's until the next call. There are two.
   Positions memory(int which = 0) const;
   // The same with all of them at q.
-  Positions placed(const ConstVec& q, int which = 0) const;
+  Positions placed(const VecView& q, int which = 0) const;
   // Places the points that are no nodes; after all slices.
   void place_extras(const Positions& positions) const;
 
@@ -72,7 +72,7 @@ class SpringsByNode {
 
 template <int D>
 template <class Action>
-void SpringsByNode<D>::for_slices(const ConstVec& q, const Action& action) const {
+void SpringsByNode<D>::for_slices(const VecView& q, const Action& action) const {
   const Positions positions = memory();
   const SpringTable springs = table();
   const int count = slices_.count();

@@ -117,7 +117,7 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
 }
 
 template <int D>
-void StiffnessKernel<D>::write(const SpringsByNode<D>& springs, const ConstVec& q, TensionPart part,
+void StiffnessKernel<D>::write(const SpringsByNode<D>& springs, const VecView& q, TensionPart part,
                                SymmetricMatrix& k) const {
   const SpringTable table = springs.table();
   const StiffnessTable own{slot_targets_.data(), targets_.data(), columns_.data()};
@@ -129,13 +129,13 @@ void StiffnessKernel<D>::write(const SpringsByNode<D>& springs, const ConstVec& 
 }
 
 template <int D>
-void StiffnessKernel<D>::stiffness(const SpringsByNode<D>& springs, const ConstVec& q,
+void StiffnessKernel<D>::stiffness(const SpringsByNode<D>& springs, const VecView& q,
                                    double compression, SymmetricMatrix& k) const {
   write(springs, q, {.is_material = false, .compression = compression}, k);
 }
 
 template <int D>
-void StiffnessKernel<D>::material_stiffness(const SpringsByNode<D>& springs, const ConstVec& q,
+void StiffnessKernel<D>::material_stiffness(const SpringsByNode<D>& springs, const VecView& q,
                                             SymmetricMatrix& k) const {
   write(springs, q, {.is_material = true, .compression = 1}, k);
 }

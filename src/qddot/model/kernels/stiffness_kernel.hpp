@@ -23,10 +23,10 @@ class StiffnessKernel {
   const std::vector<int>& links_left_out() const { return links_left_out_; }
 
   // Writes K with B = spring_stiffness(law, d, compression). q: n; k: of the pattern.
-  void stiffness(const SpringsByNode<D>& springs, const ConstVec& q, double compression,
+  void stiffness(const SpringsByNode<D>& springs, const VecView& q, double compression,
                  SymmetricMatrix& k) const;
   // The same with B = spring_material_stiffness(law, d).
-  void material_stiffness(const SpringsByNode<D>& springs, const ConstVec& q,
+  void material_stiffness(const SpringsByNode<D>& springs, const VecView& q,
                           SymmetricMatrix& k) const;
 
  private:
@@ -36,7 +36,7 @@ class StiffnessKernel {
                      Written& written);
   void place_slots(const Layout<D>& layout, const SpringsByNode<D>& springs,
                    const SymmetricMatrix& pattern, const std::vector<int>& links, Written& written);
-  void write(const SpringsByNode<D>& springs, const ConstVec& q, TensionPart part,
+  void write(const SpringsByNode<D>& springs, const VecView& q, TensionPart part,
              SymmetricMatrix& k) const;
 
   std::vector<int> links_left_out_;

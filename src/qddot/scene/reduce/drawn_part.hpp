@@ -28,7 +28,7 @@ struct DrawnPart {
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
   double gravity_noise = 0;     // the size of gravity [m/s^2] below which it is rounding
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
-  bool offers_split = false;    // whether its system is to offer SplitForces
+  bool offers_split = false;    // whether its system is to offer Split
 };
 
 // Makes the part of these members, whose numbers are those of the scene's nodes and springs.

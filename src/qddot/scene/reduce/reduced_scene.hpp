@@ -26,7 +26,7 @@ class Reduced;
 //   dimension, mirror   see reduce/frame.hpp, reduce/mirror.hpp; for the system, reduce/part.hpp
 //   constant_stiffness  springs of rest length zero; on a line, see reduce/straight.hpp
 // Dimension, mirror and constant stiffness are found for each part by itself. If the scene names
-// stiff springs, each part's system offers SplitForces by them; nothing else changes.
+// stiff springs, each part's system offers Split by them; nothing else changes.
 //
 // The start is checked: every part is compared with its nodes and springs as drawn
 // (Part::difference_from). A reduction that fails is left out of that part, and findings() says so.

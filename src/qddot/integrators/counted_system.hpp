@@ -1,0 +1,74 @@
+#pragma once
+
+#include "qddot/integrators/counts.hpp"
+#include "qddot/model/capabilities.hpp"
+
+namespace qddot {
+
+// Evaluates the functions of a system for a run. It counts every evaluation and, if the run is
+// timed, takes its time. Functions with a `part` evaluate a system with a part of the forces (see
+// Split) and count it likewise. Borrows the system, which must outlive it.
+class CountedSystem {
+ public:
+  CountedSystem(const System& system, bool is_timed)
+      : system_(system),
+        split_stiffness_(system.split_stiffness()),
+        discrete_gradient_(system.discrete_gradient()),
+        clock_(is_timed ? &seconds : nullptr) {}
+  CountedSystem(const CountedSystem&) = delete;
+  CountedSystem& operator=(const CountedSystem&) = delete;
+
+  const System& system() const { return system_; }
+
+  // f [N] into `f` (n).
+  void force(const At& at, MutableVec f) { force(system_, at, f); }
+  void force(const System& part, const At& at, MutableVec f) {
+    ++counts.force_evaluations;
+    const Stopwatch watch(clock_, &Seconds::force);
+    part.force(at, f);
+  }
+  // DiscreteGradient::mean_force, counted as a force; for methods that need it.
+  void mean_force(const At& a, const At& b, MutableVec f) {
+    ++counts.force_evaluations;
+    const Stopwatch watch(clock_, &Seconds::force);
+    discrete_gradient_->mean_force(a, b, f);
+  }
+  // K [N/m] into `k`, which has the system's pattern.
+  void stiffness(const At& at, SymmetricMatrix& k) { stiffness(system_, at, k); }
+  void stiffness(const System& part, const At& at, SymmetricMatrix& k) {
+    ++counts.stiffness_evaluations;
+    const Stopwatch watch(clock_, &Seconds::stiffness);
+    part.stiffness(at, k);
+  }
+  // The material part of K of a system that knows it, else K.
+  void material_stiffness(const System& part, const At& at, SymmetricMatrix& k) {
+    ++counts.stiffness_evaluations;
+    const Stopwatch watch(clock_, &Seconds::stiffness);
+    if (const auto* split = part.split_stiffness()) return split->material_stiffness(at, k);
+    part.stiffness(at, k);
+  }
+  // SplitStiffness::weighted_stiffness. If the system has none, this is the weight times all of K.
+  // As the weight goes to 0, M - s K goes to M, which is positive definite.
+  void weighted_stiffness(const At& at, double compression_weight, SymmetricMatrix& k) {
+    ++counts.stiffness_evaluations;
+    const Stopwatch watch(clock_, &Seconds::stiffness);
+    if (split_stiffness_) return split_stiffness_->weighted_stiffness(at, compression_weight, k);
+    system_.stiffness(at, k);
+    if (compression_weight != 1) k.coeffs() *= compression_weight;
+  }
+
+  // The record of times for a Stopwatch; nullptr unless the run is timed.
+  Seconds* clock() const { return clock_; }
+
+  Counts counts;
+  Seconds seconds;
+
+ private:
+  const System& system_;
+  // Capabilities of the system; nullptr for a missing one.
+  const SplitStiffness* split_stiffness_;
+  const DiscreteGradient* discrete_gradient_;
+  Seconds* clock_;
+};
+
+}  // namespace qddot
