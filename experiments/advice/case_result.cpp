@@ -45,7 +45,7 @@ std::vector<const Method*> in_order_of_promise(const System& system) {
 // methods that fit the scene and may be the fastest, the most promising ones first, for half a
 // minute in all. A ladder ends when its runs take longer than the fastest run so far. The best few
 // runs are timed `repeats` times. It is over budget if no run came so far.
-Point best_in_hindsight(const ReducedScene& scene, double until, double accuracy,
+Point best_in_hindsight(const Model& scene, double until, double accuracy,
                         const Reference& reference, int repeats) {
   Point best;
   best.outcome = Outcome::over_budget;
@@ -87,7 +87,7 @@ Point best_in_hindsight(const ReducedScene& scene, double until, double accuracy
 constexpr double good_reference = 0.3;
 
 // The error of positions at the end; infinite if the run does not reach it.
-double error_of_run(const Method& method, double value, const ReducedScene& model,
+double error_of_run(const Method& method, double value, const Model& model,
                     const Reference& reference) {
   const Point point = measure_point(method, value, model, reference.end.t, reference,
                                     {.seconds = 60, .repeats = 1});
@@ -95,7 +95,7 @@ double error_of_run(const Method& method, double value, const ReducedScene& mode
                                                : std::numeric_limits<double>::infinity();
 }
 
-void measure_worth(CaseResult& result, const ReducedScene& model, const Reference& reference,
+void measure_worth(CaseResult& result, const Model& model, const Reference& reference,
                    const Answer& answer, int repeats) {
   result.error =
       errors_between(model, answer.end, reference.end, reference.energy, reference.scales).position;
@@ -113,7 +113,7 @@ void measure_worth(CaseResult& result, const ReducedScene& model, const Referenc
 }  // namespace
 
 CaseResult result_of(const Case& drawn, double reference_seconds, int repeats) {
-  const ReducedScene model(drawn.scene);
+  const Model model(drawn.scene);
   CaseResult result{.name = drawn.scene.name,
                     .kind = drawn.kind,
                     .unknowns = static_cast<double>(model.system().size()),

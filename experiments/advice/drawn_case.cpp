@@ -12,7 +12,7 @@
 #include "experiments/advice/draws.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::judged_advice {
 namespace {
@@ -213,7 +213,7 @@ Case drawn_case(std::uint64_t seed) {
   const Kind& kind = kinds[static_cast<std::size_t>(draw.one_of(std::ssize(kinds)))];
   Case drawn{.seed = seed, .kind = kind.name, .scene = kind.draw(draw)};
   drawn.scene.name = fmt::format("case {} ({})", seed, kind.name);
-  const ReducedScene model(drawn.scene);
+  const Model model(drawn.scene);
   const double w =
       model.system().size() > 0 ? frequency_at_least(model.system(), model.initial().q) : 0;
   constexpr double most_work = 1e8, fewest_steps = 100, most_steps = 1e5;

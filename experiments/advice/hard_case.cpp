@@ -49,19 +49,17 @@ State start_of(const Scene& scene) {
   return state;
 }
 
-ReducedScene model_of(const HardCase& c, const Reductions& reductions) {
-  if (c.pairs.empty()) return ReducedScene(c.scene, reductions);
-  return ReducedScene(
+Model model_of(const HardCase& c, const Reductions& reductions) {
+  if (c.pairs.empty()) return Model(c.scene, reductions);
+  return Model(
       system_of_pairs(c.scene.nodes, c.scene.dimension, c.pairs, c.gives_stiffness, c.gives_energy),
       start_of(c.scene), c.scene.dimension);
 }
 
 }  // namespace
 
-ReducedScene HardCase::model() const { return model_of(*this, {}); }
-ReducedScene HardCase::as_drawn() const {
-  return model_of(*this, Reductions::only({Reduction::pins}));
-}
+Model HardCase::model() const { return model_of(*this, {}); }
+Model HardCase::as_drawn() const { return model_of(*this, Reductions::only({Reduction::pins})); }
 
 std::size_t hard_kinds() { return hard_motions.size(); }
 

@@ -6,7 +6,7 @@
 
 #include "experiments/advice/own_pairs.hpp"
 #include "qddot/measure/advice/trial.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::judged_advice {
 
@@ -23,9 +23,9 @@ struct HardCase {
   AccuracyOf of = AccuracyOf::positions;
 
   // The model that is asked, with all reductions of a scene.
-  ReducedScene model() const;
+  Model model() const;
   // The same with an unknown for each coordinate of each node that is not pinned.
-  ReducedScene as_drawn() const;
+  Model as_drawn() const;
 };
 
 // The number of kinds; hard_case() takes them in turn.

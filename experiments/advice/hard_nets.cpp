@@ -66,7 +66,7 @@ void before_horizon(HardCase& c, Draws& draw) {
     for (Node& node : c.scene.nodes) node.velocity = draw.in_box(d, 3);
   }
   const double longest = 2 * std::numbers::pi / fastest(c) * 150;
-  const ReducedScene model = c.as_drawn();
+  const Model model = c.as_drawn();
   std::vector<double> times;
   for (int i = 1; i <= 300; ++i) times.push_back(longest * i / 300);
   const auto path_of = [&](const State& start) {

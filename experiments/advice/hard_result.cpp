@@ -21,7 +21,7 @@ const char* name(AccuracyOf of) {
 }  // namespace
 
 HardResult result_of(const HardCase& hard) {
-  const ReducedScene model = hard.model();
+  const Model model = hard.model();
   HardResult result{.number = static_cast<double>(hard.number),
                     .name = hard.scene.name,
                     .kind = hard.kind,

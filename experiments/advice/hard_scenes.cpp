@@ -39,7 +39,7 @@ double apart(const Scene& scene, std::size_t i, std::size_t j) {
 }
 
 double fastest(const HardCase& c) {
-  const ReducedScene model = c.as_drawn();
+  const Model model = c.as_drawn();
   const double w = frequency_at_least(model.system(), model.initial().q);
   return w > 0 && std::isfinite(w) ? w : 1;
 }

@@ -25,8 +25,7 @@ struct Seen {
   bool reached_end = false;
   std::vector<State> path{};
 };
-Seen run(const Method& method, double value, const ReducedScene& model,
-         const std::vector<double>& times) {
+Seen run(const Method& method, double value, const Model& model, const std::vector<double>& times) {
   Seen seen;
   Options options = options_for(method, value, model);
   options.most_forces = most_forces;
@@ -39,14 +38,14 @@ Seen run(const Method& method, double value, const ReducedScene& model,
   return seen;
 }
 
-Seen fine_run(const ReducedScene& model, const std::vector<double>& times) {
+Seen fine_run(const Model& model, const std::vector<double>& times) {
   return run(*find_method("dprkn12"), 1e-13, model, times);
 }
 
 // The relative error of the run, whose energy [J] should be this one; infinite if it did not reach
 // the end.
-double error_of(const Seen& seen, const ReducedScene& model, const TrueMotion& truth,
-                const Scales& scales, AccuracyOf of, double energy = 0) {
+double error_of(const Seen& seen, const Model& model, const TrueMotion& truth, const Scales& scales,
+                AccuracyOf of, double energy = 0) {
   if (!seen.reached_end) return std::numeric_limits<double>::infinity();
   double error = 0;
   for (std::size_t i = of == AccuracyOf::positions ? seen.path.size() - 1 : 0; i < seen.path.size();
@@ -62,7 +61,7 @@ double error_of(const Seen& seen, const ReducedScene& model, const TrueMotion& t
 
 // The scales of the motion: as the model measures them on a fine run, unless this one is wrong, or
 // of all nodes together.
-Scales scales_of(const ReducedScene& model, const Seen& fine, const TrueMotion& truth,
+Scales scales_of(const Model& model, const Seen& fine, const TrueMotion& truth,
                  const Scene& scene) {
   Scales scales;
   if (fine.reached_end) {
@@ -94,7 +93,7 @@ Scales scales_of(const ReducedScene& model, const Seen& fine, const TrueMotion& 
 }
 
 // The energy [J] of these states of all nodes, computed in double precision.
-double energy_of(const ReducedScene& drawn, const std::vector<Node>& nodes) {
+double energy_of(const Model& drawn, const std::vector<Node>& nodes) {
   State state = drawn.initial();
   Index at = 0;
   for (const Node& node : nodes) {
@@ -107,7 +106,7 @@ double energy_of(const ReducedScene& drawn, const std::vector<Node>& nodes) {
 }
 
 // The energy that the true motion seems to gain or lose if its states are kept in double precision.
-double energy_of_rounding(const ReducedScene& drawn, const TrueMotion& truth) {
+double energy_of_rounding(const Model& drawn, const TrueMotion& truth) {
   const double first = energy_of(drawn, truth.path.front());
   double largest = 0;
   for (const auto& nodes : truth.path)
@@ -130,7 +129,7 @@ JudgedMotion::JudgedMotion(const HardCase& hard)
   Seen fine;
   if (!model_.system().has_massless()) fine = fine_run(model_, truth_.times);
   scales_ = scales_of(model_, fine, truth_, hard.scene);
-  const ReducedScene drawn = hard.as_drawn();
+  const Model drawn = hard.as_drawn();
   // Massless nodes may start out of balance and lose energy at once.
   energy_ = model_.system().has_massless() ? energy_of(drawn, truth_.path.front())
                                            : model_.energy(model_.initial());

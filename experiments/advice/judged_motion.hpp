@@ -16,7 +16,7 @@ class JudgedMotion {
   // Borrows the case. Only the true motion may be asked for if it is not known.
   explicit JudgedMotion(const HardCase& hard);
 
-  const ReducedScene& model() const { return model_; }
+  const Model& model() const { return model_; }
   const TrueMotion& truth() const { return truth_; }
   const Scales& scales() const { return scales_; }
   // The effect of one rounding of the start, and of the tolerance of the true motion, on the error
@@ -33,7 +33,7 @@ class JudgedMotion {
 
  private:
   const HardCase& hard_;
-  ReducedScene model_;
+  Model model_;
   TrueMotion truth_;
   Scales scales_;
   double energy_ = 0;  // [J], of the true motion

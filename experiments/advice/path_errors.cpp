@@ -38,7 +38,7 @@ std::vector<State> steps_of(const Method& method, double value, const JudgedMoti
 // Raises the errors to those of the block whose unknowns begin at `first`.
 void raise(std::vector<double>& errors, const Method& method, double value,
            const JudgedMotion& motion, const System& block, Index first) {
-  const ReducedScene& model = motion.model();
+  const Model& model = motion.model();
   const State& start = model.initial();
   const Index n = block.size();
   const auto steps = steps_of(method, value, motion, block,
@@ -62,7 +62,7 @@ void raise(std::vector<double>& errors, const Method& method, double value,
 
 std::vector<double> errors_at_looks(const Method& method, double value,
                                     const JudgedMotion& motion) {
-  const ReducedScene& model = motion.model();
+  const Model& model = motion.model();
   const TrueMotion& truth = motion.truth();
   std::vector<double> errors;
   const auto see = [&](const State& s) {

@@ -16,7 +16,7 @@ constexpr double far_above = 20;
 // The tolerance of a position, rtol (|q| + length) as in AdaptiveStep, relative to the motion.
 // Where a motion is small beside its scene, it is larger than rtol.
 double relative_tolerance(const Method& method, double rtol, const JudgedMotion& motion) {
-  const ReducedScene& model = motion.model();
+  const Model& model = motion.model();
   const double largest = model.initial().q.lpNorm<Eigen::Infinity>(),
                length = options_for(method, rtol, model).length,
                displacement = motion.scales().displacement;

@@ -3,7 +3,7 @@
 #include <exception>
 #include <string>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene_file.hpp"
 
 namespace {
@@ -15,7 +15,7 @@ struct Forces {
         q(per_mass.size()),
         f(per_mass.size()) {}
 
-  qddot::ReducedScene scene;
+  qddot::Model scene;
   qddot::Vec per_mass, q, f;
 };
 

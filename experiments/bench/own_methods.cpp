@@ -26,8 +26,8 @@ class WithPlainForce final : public System {
 };
 
 // A run of one integrator over either system, its end as that of all free nodes.
-Run run_of(const Method& method, const System& system, const ReducedScene& scene,
-           const Problem& problem, double value, double limit) {
+Run run_of(const Method& method, const System& system, const Model& scene, const Problem& problem,
+           double value, double limit) {
   const auto integrator = make_integrator(method, system, options_for(method, value, scene));
   State state = scene.initial();
   const Deadline deadline(limit);
@@ -62,7 +62,7 @@ class Registered final : public Peer {
   }
 
   Run run(const Problem& problem, ForceKind force, double value, double limit) override {
-    const ReducedScene& scene = is_smallest_ ? problem.smallest : problem.scene;
+    const Model& scene = is_smallest_ ? problem.smallest : problem.scene;
     if (force == ForceKind::ours)
       return run_of(method_, scene.system(), scene, problem, value, limit);
     const PlainForce plain(problem.start);

@@ -12,8 +12,8 @@
 namespace qddot::bench {
 namespace {
 
-Reference reference_of(const Scene& drawn, const Scene& start, const ReducedScene& scene,
-                       double until, const std::string& folder, const nlohmann::json& origin) {
+Reference reference_of(const Scene& drawn, const Scene& start, const Model& scene, double until,
+                       const std::string& folder, const nlohmann::json& origin) {
   require_reference_exists(scene, drawn.name);
   Reference reference = reference_for(drawn, start, scene, until, folder, origin);
   if (reference.is_beyond_horizon()) {
@@ -25,7 +25,7 @@ Reference reference_of(const Scene& drawn, const Scene& start, const ReducedScen
   return reference;
 }
 
-Reference in_all_unknowns(Reference reference, const ReducedScene& smallest, int dimension) {
+Reference in_all_unknowns(Reference reference, const Model& smallest, int dimension) {
   reference.end = state_of(smallest.expand(reference.end), dimension, reference.end.t);
   return reference;
 }

@@ -8,7 +8,7 @@
 
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/model/system.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::bench {
@@ -27,12 +27,12 @@ struct Problem {
   double error(const State& end) const;
 
   Scene start;
-  double until;           // [s]
-  ReducedScene smallest;  // with all reductions,
-  Reference reference;    // made of that, in its unknowns
-  ReducedScene scene;     // pins alone left out
-  Reference own;          // the same reference in these unknowns
-  double length, speed;   // what positions [m] and velocities [m/s] are large or small by
+  double until;          // [s]
+  Model smallest;        // with all reductions,
+  Reference reference;   // made of that, in its unknowns
+  Model scene;           // pins alone left out
+  Reference own;         // the same reference in these unknowns
+  double length, speed;  // what positions [m] and velocities [m/s] are large or small by
 };
 
 // Whether the spring moves a node.

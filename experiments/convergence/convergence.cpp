@@ -43,12 +43,12 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 std::vector<Point> halvings(const Method& method, const Subject& subject,
                             const Reference& reference, const Effort& effort) {
   const double until = subject.until;
-  const double w = resolved_frequency(method, subject.system(), subject.reduced.initial().q);
+  const double w = resolved_frequency(method, subject.system(), subject.model.initial().q);
   const double coarsest = method.is(Trait::implicit) ? 16 : std::max(16.0, std::ceil(until * w));
   std::vector<Point> points;
   for (int halving = 0; halving <= most_halvings; ++halving) {
     const double h = until / (coarsest * std::exp2(halving));
-    points.push_back(measure_point(method, h, subject.reduced, until, reference, effort));
+    points.push_back(measure_point(method, h, subject.model, until, reference, effort));
     if (points.back().outcome == Outcome::over_budget) {
       points.pop_back();
       break;

@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
     for (const double ratio : ascending) {
       const double end = until.is_given() ? *until : family.until;
       Scene drawn = family.draw(nodes.is_given() ? *nodes : family.nodes, end, ratio);
-      all.push_back({.ratio = ratio, .subject = {*name, drawn, drawn, ReducedScene(drawn), end}});
+      all.push_back({.ratio = ratio, .subject = {*name, drawn, drawn, Model(drawn), end}});
       shares.names.push_back(all.back().name());
     }
     const auto methods = competitors(list, all.back().subject);

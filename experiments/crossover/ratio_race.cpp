@@ -29,7 +29,7 @@ void RatioRace::measure(Study& study, AtRatio& one, const std::string& folder,
   const Subject& s = one.subject;
   progress().stage(fmt::format("ratio {:g}: making the reference", one.ratio));
   try {
-    one.reference = reference_for(s.drawn, s.start, s.reduced, s.until, folder, origin, needed);
+    one.reference = reference_for(s.drawn, s.start, s.model, s.until, folder, origin, needed);
     measure_methods(study, one);
   } catch (const NoReference& error) {
     say(fmt::format("crossover: ratio {:g}: {}; its cells are left empty", one.ratio,
@@ -75,7 +75,7 @@ void RatioRace::measure_all(Study& study, const AtRatio& one, Pruning& pruning,
     effort.recall = points_of(study, one.name() + " ", fmt::format("ratio {:g}: ", one.ratio));
     std::vector<Point>& own = points[method];
     measure_ladder(
-        *method, one.subject.reduced, one.subject.until, *one.reference, effort,
+        *method, one.subject.model, one.subject.until, *one.reference, effort,
         [&](const Point& point) { own.push_back(point); },
         [&](const Point& point) { return pruning.is_over(point); });
     std::ranges::sort(own, std::ranges::greater(), &Point::value);

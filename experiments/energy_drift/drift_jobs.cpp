@@ -19,7 +19,7 @@ Course course_of(const Argument<double>& step_size, const Argument<double>& unti
                  const Subject& subject) {
   Course course{step_size, until};
   if (!step_size.is_given()) {
-    course.step_size = standard_resolution / fastest_frequency(subject.reduced);
+    course.step_size = standard_resolution / fastest_frequency(subject.model);
     if (!std::isfinite(course.step_size)) {
       throw InvalidInput(
           fmt::format("--step-size is missing, and nothing in {} vibrates that could give a "

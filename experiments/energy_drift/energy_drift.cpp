@@ -79,17 +79,17 @@ int main(int argc, char** argv) {
     std::vector<std::optional<DriftRun>> runs;
     const auto measure = [&](Study& study) {
       progress().stage("measuring the scales of the motion");
-      scales = motion_scales(subject.reduced, momenta, course.until);
+      scales = motion_scales(subject.model, momenta, course.until);
       stop_if_interrupted();
       const auto jobs = jobs_of(study.taken(selected), course.step_size, rtols, limit);
       runs.resize(jobs.size());
       progress().begin(jobs.size());
       side_by_side(jobs.size(), [&](std::size_t i) {
         const auto& [method, value, seconds] = jobs[i];
-        Options own = options_for(*method, value, subject.reduced, options);
+        Options own = options_for(*method, value, subject.model, options);
         own.compensated = compensated && method->listens_to(Option::compensated);
         runs[i] = drift_run_of(study.piece(fmt::format("{} {:.17g}", method->name, value), [&] {
-          return record_of(run_drift(*method, own, subject.reduced, momenta, scales,
+          return record_of(run_drift(*method, own, subject.model, momenta, scales,
                                      {course.step_size, course.until, seconds}));
         }));
         progress().finish(fmt::format("{} {:.3g}: {}", method->name, value,

@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
                  });
   return p.run(argc, argv, [&]() -> int {
     const Scene drawn = load(scene);
-    const ReducedScene reduced(drawn, Reductions::all_directions());
+    const Model model(drawn, Reductions::all_directions());
     std::optional<CsvFile> csv;
     if (path.is_given()) csv.emplace(*path, node_header(drawn.dimension, {}));
     std::optional<CsvFile> shape, springs;
@@ -89,9 +89,9 @@ int main(int argc, char** argv) {
     }
 
     progress().stage("finding the equilibrium");
-    const Equilibrium rest = equilibrium_of(reduced);
+    const Equilibrium rest = equilibrium_of(model);
     progress().wipe();
-    const auto nodes = reduced.expand({0, rest.q, Vec::Zero(rest.q.size())});
+    const auto nodes = model.expand({0, rest.q, Vec::Zero(rest.q.size())});
     nlohmann::json origin = provenance(p.command_line(), drawn);
     origin["outcome"] = name(rest.outcome);
     origin["residual"] = rest.residual;
@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
     }
     fmt::print("{}: at rest after {} iterations; largest force {:.2g} N, energy {:.9g} J\n",
                drawn.name, rest.iterations, rest.residual,
-               reduced.potential({0, rest.q, Vec::Zero(rest.q.size())}));
+               model.potential({0, rest.q, Vec::Zero(rest.q.size())}));
     fmt::print("smallest eigenvalue of -K: {:.6g} N/m, {}\n", rest.smallest_eigenvalue,
                isolation_in_words(rest, drawn));
     return done;

@@ -97,9 +97,9 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
 }
 
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
-                          const Scene& start, const ReducedScene& reduced) {
+                          const Scene& start, const Model& model) {
   nlohmann::json origin = provenance(command_line, drawn);
-  const Explanation e = explain(start, reduced, at_a_glance);
+  const Explanation e = explain(start, model, at_a_glance);
   nlohmann::json reductions = nlohmann::json::array();
   for (const Finding& finding : e.findings) {
     reductions.push_back({{"name", name(finding.reduction)}, {"what", finding.what}});
@@ -108,7 +108,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
   origin["reduced"] = {
       {"unknowns_drawn", e.drawn_unknowns},
       {"unknowns", e.unknowns},
-      {"parts", reduced.parts().size()},
+      {"parts", model.parts().size()},
       {"reductions", reductions},
       {"stiffness_is_constant", e.stiffness_is_constant},
       {"omega_max", e.omega_max},

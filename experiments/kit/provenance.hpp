@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::inline kit::build_info {
@@ -31,7 +31,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line, const Sc
 // The same with the reductions of the scene and the rest (see Explanation, whose eigenvalues are
 // null for scenes that are not at_a_glance). `start`: the scene as it starts.
 nlohmann::json provenance(const std::vector<std::string>& command_line, const Scene& drawn,
-                          const Scene& start, const ReducedScene& reduced);
+                          const Scene& start, const Model& model);
 
 // The properties of the machine that decide the times and the rounding of runs: processor ("cpu"),
 // level of the kernels, libraries.

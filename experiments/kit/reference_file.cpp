@@ -105,7 +105,7 @@ std::string checksum(nlohmann::json json) {
 
 // Whether start and end have the same energy, as in the exact motion. The certified error and
 // another machine's rounding may separate them.
-bool keeps_energy(const Reference& r, const ReducedScene& scene) {
+bool keeps_energy(const Reference& r, const Model& scene) {
   const State& start = scene.initial();
   const double kinetic = scene.kinetic(start), potential = scene.potential(start);
   const double rounded = 64 * std::numeric_limits<double>::epsilon() *
@@ -115,7 +115,7 @@ bool keeps_energy(const Reference& r, const ReducedScene& scene) {
          std::abs(scene.energy(r.end) - r.energy) <= tolerated;
 }
 
-bool fits(const Reference& reference, const ReducedScene& scene, double until) {
+bool fits(const Reference& reference, const Model& scene, double until) {
   const Index n = scene.system().size();
   const std::size_t nodes = scene.expand(scene.initial()).size();
   return reference.end.t == until && reference.end.q.size() == n && reference.end.v.size() == n &&
@@ -129,8 +129,7 @@ bool fits(const Reference& reference, const ReducedScene& scene, double until) {
 }
 
 // The reference that the file holds, if it is whole and that of the scene at `until`.
-std::optional<Reference> stored(const nlohmann::json& json, const ReducedScene& scene,
-                                double until) {
+std::optional<Reference> stored(const nlohmann::json& json, const Model& scene, double until) {
   if (!json.contains("checksum") || json["checksum"] != checksum(json)) return {};
   try {
     Reference reference = reference_from_json(json);
@@ -146,8 +145,7 @@ void say_expected(double seconds) {
 }
 
 // Throws Interrupted where the program is to end: what was made meanwhile may be poorer for it.
-Reference made(const ReducedScene& scene, const Scene& start, double until,
-               std::optional<double> needed) {
+Reference made(const Model& scene, const Scene& start, double until, std::optional<double> needed) {
   try {
     Reference reference = needed
                               ? agreed_reference(scene, until, *needed, longest_agreeing)
@@ -163,7 +161,7 @@ Reference made(const ReducedScene& scene, const Scene& start, double until,
 std::string file_in(const std::string& folder) { return folder + "/reference.json"; }
 
 // The key of a reference file: scene, end, code and accuracy.
-nlohmann::json key_of(const Scene& drawn, const ReducedScene& scene, double until,
+nlohmann::json key_of(const Scene& drawn, const Model& scene, double until,
                       std::optional<double> needed) {
   nlohmann::json key = {{"scene_hash", content_hash(drawn)},
                         {"unknowns", scene.system().size()},
@@ -255,7 +253,7 @@ Reference reference_without_end(const nlohmann::json& json) {
   return reference;
 }
 
-void require_reference_exists(const ReducedScene& scene, const std::string& source) {
+void require_reference_exists(const Model& scene, const std::string& source) {
   const auto massless = scene.massless_nodes();
   if (massless.empty()) return;
   throw InvalidInput(fmt::format(
@@ -265,17 +263,16 @@ void require_reference_exists(const ReducedScene& scene, const std::string& sour
 }
 
 void require_reference_exists(const Subject& subject) {
-  require_reference_exists(subject.reduced, subject.source);
+  require_reference_exists(subject.model, subject.source);
 }
 
 Reference reference_for(const Subject& subject, const std::string& folder,
                         const nlohmann::json& origin) {
-  return reference_for(subject.drawn, subject.start, subject.reduced, subject.until, folder,
-                       origin);
+  return reference_for(subject.drawn, subject.start, subject.model, subject.until, folder, origin);
 }
 
-Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
-                        double until, const std::string& folder, const nlohmann::json& origin,
+Reference reference_for(const Scene& drawn, const Scene& start, const Model& scene, double until,
+                        const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed) {
   const std::string file = file_in(folder);
   const nlohmann::json key = key_of(drawn, scene, until, needed);

@@ -22,7 +22,7 @@ Reference reference_from_json(const nlohmann::json& json);
 Reference reference_without_end(const nlohmann::json& json);
 
 // Throws InvalidInput if no reference can be made of the scene, since a free node has no mass.
-void require_reference_exists(const ReducedScene& scene, const std::string& source);
+void require_reference_exists(const Model& scene, const std::string& source);
 
 void require_reference_exists(const Subject& subject);
 
@@ -32,8 +32,8 @@ void require_reference_exists(const Subject& subject);
 // the file was damaged. A new reference is as accurate as possible, or has the position error
 // `needed` if that is given. `start` is the drawn scene as its motion starts, and `scene` the
 // reduction of `start`.
-Reference reference_for(const Scene& drawn, const Scene& start, const ReducedScene& scene,
-                        double until, const std::string& folder, const nlohmann::json& origin,
+Reference reference_for(const Scene& drawn, const Scene& start, const Model& scene, double until,
+                        const std::string& folder, const nlohmann::json& origin,
                         std::optional<double> needed = {});
 
 Reference reference_for(const Subject& subject, const std::string& folder,

@@ -76,14 +76,14 @@ Subject subject_of(const SceneChoice& choice, double until) {
 
 Subject subject_of(Scene drawn, const SceneChoice& choice, double until) {
   Scene start = started(drawn, choice);
-  ReducedScene reduced(start, reductions_of(choice));
-  return {choice.name, std::move(drawn), std::move(start), std::move(reduced), until};
+  Model model(start, reductions_of(choice));
+  return {choice.name, std::move(drawn), std::move(start), std::move(model), until};
 }
 
-void require_fit(const Method& method, const ReducedScene& scene, const std::string& source) {
-  const auto why = misfit(method, scene.system());
+void require_fit(const Method& method, const Model& model, const std::string& source) {
+  const auto why = misfit(method, model.system());
   const auto others = [&] {
-    return names_where([&](const Method& other) { return applies_to(other, scene.system()); });
+    return names_where([&](const Method& other) { return applies_to(other, model.system()); });
   };
   if (why == Outcome::stiffness_varies) {
     throw InvalidInput(
@@ -97,7 +97,7 @@ void require_fit(const Method& method, const ReducedScene& scene, const std::str
         "the others; allowed are finite numbers above 0 in N/m, or the methods {}",
         source, method.name, others()));
   }
-  const auto massless = scene.massless_nodes();
+  const auto massless = model.massless_nodes();
   if (!massless.empty() && !method.is(Trait::accepts_massless)) {
     throw InvalidInput(fmt::format(
         "{}: nodes[{}].mass: 0 is not allowed with {}, which divides by it; allowed are masses "
@@ -111,17 +111,17 @@ const Method& method_named(const std::string& name, const std::string& option) {
   return named(name, methods(), &Method::name, option, "a method");
 }
 
-std::vector<const Method*> select_methods(const std::vector<std::string>& list,
-                                          const ReducedScene& scene, const std::string& source) {
+std::vector<const Method*> select_methods(const std::vector<std::string>& list, const Model& model,
+                                          const std::string& source) {
   std::vector<const Method*> selected;
   if (list.empty()) {
     for (const Method& method : methods()) {
-      if (applies_to(method, scene.system())) selected.push_back(&method);
+      if (applies_to(method, model.system())) selected.push_back(&method);
     }
   }
   for (const std::string& name : list) {
     selected.push_back(&method_named(name, "--methods"));
-    require_fit(*selected.back(), scene, source);
+    require_fit(*selected.back(), model, source);
   }
   require_each_once(list, "--methods");
   return selected;
@@ -129,7 +129,7 @@ std::vector<const Method*> select_methods(const std::vector<std::string>& list,
 
 std::vector<const Method*> select_methods(const std::vector<std::string>& list,
                                           const Subject& subject) {
-  return select_methods(list, subject.reduced, subject.source);
+  return select_methods(list, subject.model, subject.source);
 }
 
 std::vector<const Method*> select_fixed_step(const std::vector<std::string>& list,

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::inline kit {
@@ -35,12 +35,12 @@ Reductions reductions_of(const SceneChoice& choice);
 
 // A scene that a program works on.
 struct Subject {
-  std::string source;    // as the user named it
-  Scene drawn, start;    // start: as its motion starts
-  ReducedScene reduced;  // of start
-  double until = 0;      // [s]; 0 if the program has times of its own
+  std::string source;  // as the user named it
+  Scene drawn, start;  // start: as its motion starts
+  Model model;         // of start
+  double until = 0;    // [s]; 0 if the program has times of its own
 
-  const System& system() const { return reduced.system(); }
+  const System& system() const { return model.system(); }
   // The facts that decide a study of it: hash, name and time.
   nlohmann::json about() const;
 };
@@ -53,15 +53,15 @@ Subject subject_of(Scene drawn, const SceneChoice& choice, double until);
 // Throws InvalidInput unless the method can run the scene. Some methods need a constant K, others
 // need named stiff springs, and most allow no massless node. The message names the node and the
 // methods that allow it. `source` names the scene.
-void require_fit(const Method& method, const ReducedScene& scene, const std::string& source);
+void require_fit(const Method& method, const Model& model, const std::string& source);
 
 // The method of that name, which the option has. Throws InvalidInput if there is none.
 const Method& method_named(const std::string& name, const std::string& option);
 
 // The methods named in `list` (a,b,...), or all that can run the scene if the list is empty. Throws
 // InvalidInput for an unknown or repeated name, and as require_fit does.
-std::vector<const Method*> select_methods(const std::vector<std::string>& list,
-                                          const ReducedScene& scene, const std::string& source);
+std::vector<const Method*> select_methods(const std::vector<std::string>& list, const Model& model,
+                                          const std::string& source);
 
 std::vector<const Method*> select_methods(const std::vector<std::string>& list,
                                           const Subject& subject);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::local_global {
 
@@ -27,7 +27,7 @@ struct SwingingCloth {
   double distance(const State& a, const State& b) const;
 
   Scene drawn;
-  ReducedScene scene;
+  Model scene;
   State start;
 };
 

@@ -50,22 +50,22 @@ int main(int argc, char** argv) {
     const Scene drawn = load(scene);
     const bool at_equilibrium = is_at_equilibrium(at, drawn);
     if (at_equilibrium) progress().stage("finding the equilibrium");
-    const ReducedScene reduced(at_equilibrium ? settled(drawn, scene->name) : drawn,
-                               Reductions::all_directions());
+    const Model model(at_equilibrium ? settled(drawn, scene->name) : drawn,
+                      Reductions::all_directions());
     require_folder(p.folder());
     CsvFile table(p.folder() + "/modes.csv", {"mode", "omega", "frequency_hz"});
     CsvFile shapes(p.folder() + "/shapes.csv", shape_header(drawn.dimension));
     CsvFile springs(p.folder() + "/springs.csv", {"i", "j"});
 
-    const System& system = reduced.system();
-    const Vec& q = reduced.initial().q;
+    const System& system = model.system();
+    const Vec& q = model.initial().q;
     progress().stage("finding the modes");
-    const Spectrum spectrum(reduced, count);
+    const Spectrum spectrum(model, count);
     const double lanczos = largest_frequency(system, q), bound = frequency_bound(system, q);
     progress().wipe();
     const Index shown = std::min<Index>(*count, spectrum.lowest.squares.size());
     write_spectrum(table, spectrum);
-    write_shapes(shapes, reduced, spectrum.lowest.shapes.leftCols(shown));
+    write_shapes(shapes, model, spectrum.lowest.shapes.leftCols(shown));
     for (const Spring& spring : drawn.springs) springs.row(spring.nodes[0], spring.nodes[1]);
 
     const char* place = at_equilibrium ? "at equilibrium" : "as drawn";

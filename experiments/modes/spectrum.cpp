@@ -15,7 +15,7 @@ double omega(double square) { return std::copysign(std::sqrt(std::abs(square)), 
 
 }  // namespace
 
-Spectrum::Spectrum(const ReducedScene& scene, Index count)
+Spectrum::Spectrum(const Model& scene, Index count)
     : finite(finite_modes(scene.system())),
       signs(curvature_signs(scene.system(), scene.initial().q)) {
   const Vec& q = scene.initial().q;
@@ -63,7 +63,7 @@ std::vector<std::string> shape_header(int dimension) {
   return header;
 }
 
-void write_shapes(CsvFile& csv, const ReducedScene& scene, const Eigen::MatrixXd& shapes) {
+void write_shapes(CsvFile& csv, const Model& scene, const Eigen::MatrixXd& shapes) {
   for (Index j = 0; j < shapes.cols(); ++j) {
     // A displacement goes through the reduction as a velocity does.
     const auto nodes = scene.expand({0, scene.initial().q, shapes.col(j)});

@@ -6,7 +6,7 @@
 #include "experiments/kit/csv.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/natural_modes.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::modes {
 
@@ -16,7 +16,7 @@ struct Spectrum {
   CurvatureSigns signs;          // by rank: growing modes, then those hidden by rounding
   NaturalModes lowest, highest;  // of `count` modes each, if there are so many; highest: the others
 
-  Spectrum(const ReducedScene& scene, Index count);
+  Spectrum(const Model& scene, Index count);
 };
 
 // Prints the lowest modes and the highest one.
@@ -27,6 +27,6 @@ void write_spectrum(CsvFile& csv, const Spectrum& spectrum);
 // The columns and rows of shapes.csv: the positions of all nodes and, in each mode, their
 // displacements.
 std::vector<std::string> shape_header(int dimension);
-void write_shapes(CsvFile& csv, const ReducedScene& scene, const Eigen::MatrixXd& shapes);
+void write_shapes(CsvFile& csv, const Model& scene, const Eigen::MatrixXd& shapes);
 
 }  // namespace qddot::modes

@@ -92,7 +92,7 @@ Cells cells_of(const Scene& scene) {
   return cells;
 }
 
-Framing::Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted)
+Framing::Framing(const Scene& start, const Model& scene, const Fields& wanted)
     : scene_(scene),
       wanted_(wanted),
       lengths_(strain_lengths(start, scene.expand(scene.initial()))) {

@@ -40,7 +40,7 @@ struct Frame {
 class Framing {
  public:
   // `scene` must outlive it. `wanted`: the fields of frames beside positions.
-  Framing(const Scene& start, const ReducedScene& scene, const Fields& wanted);
+  Framing(const Scene& start, const Model& scene, const Fields& wanted);
 
   // The frame of the state, with distances if there is a reference; the next call overwrites it.
   // nullptr if a number is not finite or beyond 32-bit floats, and from then on.
@@ -55,7 +55,7 @@ class Framing {
   std::uint32_t take_nodes(std::size_t first, std::size_t end);
   std::uint32_t take_strains(std::size_t first, std::size_t end);
 
-  const ReducedScene& scene_;
+  const Model& scene_;
   Fields wanted_;
   std::vector<double> masses_;  // [kg], zero where pinned
   std::vector<std::array<std::uint32_t, 2>> springs_;

@@ -47,7 +47,7 @@ Fields fields_named(const std::vector<std::string>& names, const std::string& pa
 }
 
 std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
-                                        const ReducedScene& scene, bool has_reference,
+                                        const Model& scene, bool has_reference,
                                         const Fields& fields, Readers readers) {
   files_of_motion(path, "motion");
   Framing framing(start, scene, is_pc2(path) ? no_fields : fields);

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::motion_files {
 
@@ -56,7 +56,7 @@ enum class Readers { all, of_vtkhdf };
 // if the ending is another one, a file cannot be written, the format cannot count the scene's
 // nodes, or the start exceeds 32-bit floats.
 std::unique_ptr<MotionFile> open_motion(const std::string& path, const Scene& start,
-                                        const ReducedScene& scene, bool has_reference = false,
+                                        const Model& scene, bool has_reference = false,
                                         const Fields& fields = {}, Readers readers = Readers::all);
 
 }  // namespace qddot::motion_files

@@ -80,7 +80,7 @@ struct TimedRun {
 };
 
 // The run without anybody who looks, timed by phase.
-TimedRun timed_run(const ReducedScene& scene, double until, const Method& method, Options options,
+TimedRun timed_run(const Model& scene, double until, const Method& method, Options options,
                    double seconds) {
   options.timed = true;
   const auto integrator = make_integrator(method, scene.system(), options);
@@ -106,7 +106,7 @@ int usual_number_of_frames(std::size_t nodes) {
   return static_cast<int>(std::clamp<double>(fit, fewest_frames, usual_frames));
 }
 
-KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const ReducedScene& scene,
+KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const Model& scene,
                          std::vector<double> times, const nlohmann::json& origin)
     : folder_(folder),
       start_(start),

@@ -20,7 +20,7 @@ class KeptMotions {
   // Throws InvalidInput where the folder cannot be written. The scene must outlive it. `start` is
   // the drawn scene as its motion starts. `times` [s] are those of the frames, the start first.
   // `origin` records how each motion was made (see provenance.hpp).
-  KeptMotions(const std::string& folder, const Scene& start, const ReducedScene& scene,
+  KeptMotions(const std::string& folder, const Scene& start, const Model& scene,
               std::vector<double> times, const nlohmann::json& origin);
   // Removes what has not appeared.
   ~KeptMotions();
@@ -59,7 +59,7 @@ class KeptMotions {
 
   std::string folder_;
   const Scene& start_;
-  const ReducedScene& scene_;
+  const Model& scene_;
   std::vector<double> times_;
   std::vector<State> reference_;  // none where nobody knows it
   std::vector<std::string> earlier_;

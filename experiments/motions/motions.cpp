@@ -104,12 +104,12 @@ int main(int argc, char** argv) {
     const auto times = frame_times(
         study.until,
         frames.is_given() ? *frames : usual_number_of_frames(subject.start.nodes.size()));
-    KeptMotions kept(p.folder(), subject.start, subject.reduced, times, origin);
+    KeptMotions kept(p.folder(), subject.start, subject.model, times, origin);
     wait_for_answer(patience_with_a_run);
     std::optional<Interruption> why;
     try {
       progress().stage("making the reference's motion");
-      const auto moves = reference_motion(times, subject.reduced, reference, study.points,
+      const auto moves = reference_motion(times, subject.model, reference, study.points,
                                           study.options, longest_reference);
       if (moves) {
         kept.add_reference(*moves);

@@ -25,7 +25,7 @@ const Point* most_accurate(const std::vector<Point>& points) {
   return best == points.end() || !(error_of(*best) <= least_accurate) ? nullptr : &*best;
 }
 
-double error_at_end(const std::vector<State>& states, const ReducedScene& scene,
+double error_at_end(const std::vector<State>& states, const Model& scene,
                     const Reference& reference) {
   return errors_between(scene, states.back(), reference.end, reference.energy, reference.scales)
       .position;
@@ -33,7 +33,7 @@ double error_at_end(const std::vector<State>& states, const ReducedScene& scene,
 
 }  // namespace
 
-std::vector<State> states_at(const std::vector<double>& times, const ReducedScene& scene,
+std::vector<State> states_at(const std::vector<double>& times, const Model& scene,
                              const Method& method, const Options& options, double seconds) {
   State state = scene.initial();
   std::vector<State> states = {state};
@@ -47,8 +47,7 @@ std::vector<State> states_at(const std::vector<double>& times, const ReducedScen
 }
 
 std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times,
-                                                const ReducedScene& scene,
-                                                const Reference& reference,
+                                                const Model& scene, const Reference& reference,
                                                 const std::vector<Point>& points,
                                                 const Options& options, double seconds) {
   const auto start = std::chrono::steady_clock::now();

@@ -17,7 +17,7 @@ struct ReferenceMotion {
 };
 
 // The states of a run at `times` [s], from 0 to the end; fewer if it does not reach the end.
-std::vector<State> states_at(const std::vector<double>& times, const ReducedScene& scene,
+std::vector<State> states_at(const std::vector<double>& times, const Model& scene,
                              const Method& method, const Options& options, double seconds);
 
 // The motion of the reference at `times` [s]. It is Kahan and Li's composition with smaller and
@@ -25,8 +25,7 @@ std::vector<State> states_at(const std::vector<double>& times, const ReducedScen
 // rounding is left, or `seconds` are over. It is the run of the most accurate point if that is
 // nearer. Empty if neither comes within 1e-6 of the end, as beyond the horizon of a chaotic motion.
 std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times,
-                                                const ReducedScene& scene,
-                                                const Reference& reference,
+                                                const Model& scene, const Reference& reference,
                                                 const std::vector<Point>& points,
                                                 const Options& options, double seconds);
 

@@ -15,16 +15,15 @@ struct Row {
 };
 
 Row there_and_back(const Method& method, double step_size, const Subject& subject) {
-  const Options options = options_for(method, step_size, subject.reduced);
-  State state = subject.reduced.initial();
+  const Options options = options_for(method, step_size, subject.model);
+  State state = subject.model.initial();
   for (int i = 0; i < 2; ++i) {
     const auto run = make_integrator(method, subject.system(), options);
     const Summary end = run->advance(state, subject.until, {}, interruption());
     if (end.outcome != Outcome::reached_end) return {method.name, step_size, NAN};
     state = {.t = 0, .q = state.q, .v = -state.v};
   }
-  return {method.name, step_size,
-          (state.q - subject.reduced.initial().q).lpNorm<Eigen::Infinity>()};
+  return {method.name, step_size, (state.q - subject.model.initial().q).lpNorm<Eigen::Infinity>()};
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ struct Run {
   double seconds;
 };
 
-Run run(Integrator& integrator, double step_size, double steps, const ReducedScene& scene) {
+Run run(Integrator& integrator, double step_size, double steps, const Model& scene) {
   State state = scene.initial();
   Run result;
   result.seconds =
@@ -139,7 +139,7 @@ StepPhases phases_of(const Run& run, double forces) {
 }
 
 // The fastest of evaluations of `seconds` at the scene's start. `springs`: how many of them move.
-ForceRate force_rate(const ReducedScene& scene, double springs, double seconds) {
+ForceRate force_rate(const Model& scene, double springs, double seconds) {
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   Vec f(system.size());
@@ -152,7 +152,7 @@ ForceRate force_rate(const ReducedScene& scene, double springs, double seconds) 
 // Measures the cost of a step of `step_size` [s] from the scene's start. After one step to warm up,
 // it repeats runs long enough for the clock; the fastest counts. A first step of some seconds is
 // not repeated. Forces before the first step are subtracted.
-StepPhases step_phases(Integrator& integrator, double step_size, const ReducedScene& scene) {
+StepPhases step_phases(Integrator& integrator, double step_size, const Model& scene) {
   const Run first = run(integrator, step_size, 1, scene);
   const auto forces = [](const Run& r) {
     return static_cast<double>(r.summary.counts.force_evaluations);
@@ -177,7 +177,7 @@ StepPhases step_phases(Integrator& integrator, double step_size, const ReducedSc
 std::vector<SolvedMethod> solved_methods(const SizedScenes& scenes, const Reductions& reductions,
                                          const std::vector<std::string>& methods,
                                          const std::vector<std::string>& solvers) {
-  const ReducedScene smallest(scenes.draw(least_nodes), reductions);
+  const Model smallest(scenes.draw(least_nodes), reductions);
   const auto all_solvers = select_solvers(solvers);
   std::vector<SolvedMethod> selected;
   for (const Method* method : select_methods(methods, smallest, scenes.name)) {
@@ -221,7 +221,7 @@ ScalingResults ScalingRun::measured_size(const SizedScenes& scenes, double size,
   if (!fits(scenes, "", phases_before, size, passing_memory, result)) return result;
   progress().now_at(at(scenes.name, std::round(size)));
   std::optional<Scene> drawn;
-  std::optional<ReducedScene> reduced;
+  std::optional<Model> reduced;
   const Making drawing = make(drawn, [&] { return scenes.draw(size); });
   const double nodes = static_cast<double>(drawn->nodes.size());
   result.sizes.push_back({.scene = scenes.name,
@@ -229,7 +229,7 @@ ScalingResults ScalingRun::measured_size(const SizedScenes& scenes, double size,
                           .nodes = nodes,
                           .springs = static_cast<double>(drawn->springs.size())});
   result.add("", "scene", drawing.seconds, drawing.bytes);
-  const Making reducing = make(reduced, [&] { return ReducedScene(*drawn, limits_.reductions); });
+  const Making reducing = make(reduced, [&] { return Model(*drawn, limits_.reductions); });
   result.add("", "reduce", reducing.seconds, reducing.bytes);
   const double moving = moving_springs(*drawn);
   drawn.reset();
@@ -257,8 +257,8 @@ ScalingResults ScalingRun::measured_size(const SizedScenes& scenes, double size,
   return result;
 }
 
-void ScalingRun::measure_method(const SolvedMethod& solved, const ReducedScene& scene,
-                                double step_size, ScalingResults& result) const {
+void ScalingRun::measure_method(const SolvedMethod& solved, const Model& scene, double step_size,
+                                ScalingResults& result) const {
   const Method& method = *solved.method;
   const std::string name = solved.name();
   const System& system = scene.system();

@@ -7,7 +7,7 @@
 #include "experiments/scaling/phase_table.hpp"
 #include "qddot/algebra/solver.hpp"
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::scaling {
 
@@ -97,7 +97,7 @@ class ScalingRun {
  private:
   ScalingResults measured_size(const SizedScenes& scenes, double size,
                                std::vector<SolvedMethod> methods) const;
-  void measure_method(const SolvedMethod& solved, const ReducedScene& scene, double step_size,
+  void measure_method(const SolvedMethod& solved, const Model& scene, double step_size,
                       ScalingResults& result) const;
   bool fits(const SizedScenes& scenes, const std::string& method,
             const std::vector<std::string>& phases, double nodes, double memory,

@@ -13,7 +13,7 @@
 namespace qddot::simulate {
 
 Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, const Scene& start,
-                 const ReducedScene& scene, double until)
+                 const Model& scene, double until)
     : scene_(scene),
       trajectory_times_(samples(every.trajectory, until)),
       energy_times_(samples(every.energy, until)),

@@ -11,7 +11,7 @@
 #include "experiments/motion_files/motion_file.hpp"
 #include "experiments/simulate/arguments.hpp"
 #include "experiments/simulate/background_observer.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::simulate {
 
@@ -23,7 +23,7 @@ class Outputs {
   // `scene` was reduced from. The scene must outlive it. Throws InvalidInput if a file cannot be
   // written.
   Outputs(const Arguments& a, const Every& every, const Scene& drawn, const Scene& start,
-          const ReducedScene& scene, double until);
+          const Model& scene, double until);
 
   // Asks for the times of the samples.
   Observer observer();
@@ -37,7 +37,7 @@ class Outputs {
   void finish(const State& state, const nlohmann::json& origin);
 
  private:
-  const ReducedScene& scene_;
+  const Model& scene_;
   std::vector<double> trajectory_times_, energy_times_, motion_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
   std::unique_ptr<motion_files::MotionFile> motion_;

@@ -48,7 +48,7 @@ void refuse_choices(const Program& program) {
 }
 
 // Repeats the method's run for the outputs on its way; returns its end.
-State seen(const Answer& answer, const std::shared_ptr<const ReducedScene>& model, double until,
+State seen(const Answer& answer, const std::shared_ptr<const Model>& model, double until,
            Outputs& output) {
   Simulation run(model, *answer.method, options_for(*answer.method, answer.value, *model));
   output.see(run.state());
@@ -105,7 +105,7 @@ int answer(const Arguments& a) {
   const Every every = every_of(a);
   require_distinct_outputs(a);
   Subject subject = subject_of(a.scene, a.until);
-  const auto model = std::make_shared<const ReducedScene>(std::move(subject.reduced));
+  const auto model = std::make_shared<const Model>(std::move(subject.model));
   const double until = subject.until;
 
   Outputs output(a, every, subject.drawn, subject.start, *model, until);
@@ -155,8 +155,8 @@ int run_method(const Arguments& a) {
   if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const Scene start = started(drawn, a.scene);
   const auto model =
-      std::make_shared<const ReducedScene>(reduced_for(method, start, reductions_of(a.scene)));
-  const ReducedScene& scene = *model;
+      std::make_shared<const Model>(reduced_for(method, start, reductions_of(a.scene)));
+  const Model& scene = *model;
   require_fit(method, scene, a.scene->name);
   Simulation run(model, method, options);
   require_atol(run.options());

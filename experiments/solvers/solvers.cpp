@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
     return p.study(
         about,
         [&](Study& study) {
-          system.stiffness(subject.reduced.initial().q, k);
+          system.stiffness(subject.model.initial().q, k);
           for (const auto& kind : kinds) {
             stop_if_interrupted();
             contenders.emplace_back(kind, system, step_size * step_size, k);

@@ -57,7 +57,7 @@ constexpr int modes_excited = 12;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 // The row of modal.csv of a method in a mode.
-std::string modal_row(const Method& method, const Mode& mode, const ReducedScene& rest, double h) {
+std::string modal_row(const Method& method, const Mode& mode, const Model& rest, double h) {
   LinearStep predicted{}, measured{};
   std::string verdict;
   try {
@@ -164,7 +164,7 @@ void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>&
 }
 
 void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,
-                    const ReducedScene& rest, double step_size) {
+                    const Model& rest, double step_size) {
   std::vector<const Method*> stepping = methods;
   std::erase_if(stepping, [&](const Method* method) {
     return !has_linear_step(*method) || !applies_to(*method, rest.system());

@@ -6,7 +6,7 @@
 #include "experiments/kit/csv.hpp"
 #include "experiments/kit/study.hpp"
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::stability_map {
 
@@ -44,6 +44,6 @@ void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>&
 // to make the steps, the reason replaces the verdict. h = `step_size` [s], or 1/w_max if that is 0.
 // Runs on all cores (OpenMP); the rows of a method are a piece of the study.
 void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,
-                    const ReducedScene& rest, double step_size);
+                    const Model& rest, double step_size);
 
 }  // namespace qddot::stability_map

@@ -52,7 +52,7 @@ Looks looks_at(const Method& method, int stride) {
 }
 
 // Runs the method on the scene at rest; `see` takes the state at each look.
-Summary run(const Method& method, const ReducedScene& rest, State state, const Options& options,
+Summary run(const Method& method, const Model& rest, State state, const Options& options,
             const Looks& looks, const std::function<void(const State&)>& see) {
   Observer each{{}, see};
   for (int n = 1; n <= looks.strides; ++n) {
@@ -86,8 +86,7 @@ std::complex<double> mean_root(const Responses& y) {
 
 }  // namespace
 
-LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode& mode,
-                      Options options) {
+LinearStep modal_step(const Method& method, const Model& rest, const Mode& mode, Options options) {
   options = with_tolerance_scales(options, rest);
   options.solve_tolerance = solved;
   const double h_omega = options.step_size * mode.omega;

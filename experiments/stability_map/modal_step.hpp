@@ -12,8 +12,7 @@ namespace qddot::stability_map {
 // projects the results on it. Differences to linear_step at the same h w come from this scene's
 // forces (unfinished iterations, or matrices that mix modes). `rest` is at rest in
 // rest.initial().q. Nonlinear solves are carried to the end. Throws as linear_step does.
-LinearStep modal_step(const Method& method, const ReducedScene& rest, const Mode& mode,
-                      Options options);
+LinearStep modal_step(const Method& method, const Model& rest, const Mode& mode, Options options);
 
 // The verdict: "blows up" grows by more than 1e-6 a step, "lives" keeps half of its energy for ten
 // periods or more. "is killed" loses nine tenths of its amplitude within one period, and "is

@@ -89,14 +89,14 @@ Scene scaled(const Scene& start, const Scene& rest, double amplitude) {
 }
 
 double energy_at_rest(const Scene& rest) {
-  const ReducedScene scene(rest, Reductions::only({Reduction::pins}));
+  const Model scene(rest, Reductions::only({Reduction::pins}));
   return scene.potential(scene.initial());
 }
 
 AmplitudeRow row_of(double amplitude, const Scene& start, double rest_energy,
                     const Reductions& reductions) {
   AmplitudeRow row{.amplitude = amplitude,
-                   .scene = std::make_unique<ReducedScene>(start, reductions),
+                   .scene = std::make_unique<Model>(start, reductions),
                    .rest_energy = rest_energy,
                    .omega_max = 0,
                    .buckling_rate = 0,
@@ -115,7 +115,7 @@ bool moves(const AmplitudeRow& row) {
 
 }  // namespace
 
-double omega_max_of(const ReducedScene& scene) {
+double omega_max_of(const Model& scene) {
   const NaturalModes highest = highest_modes(scene.system(), scene.initial().q, 1);
   return highest.squares.size() == 0 ? 0 : std::sqrt(std::max(0.0, highest.squares[0]));
 }

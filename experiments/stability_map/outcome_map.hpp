@@ -16,7 +16,7 @@ namespace qddot::stability_map {
 // A scene at one amplitude of its motion, and its properties by linear theory.
 struct AmplitudeRow {
   double amplitude;
-  std::unique_ptr<ReducedScene> scene;
+  std::unique_ptr<Model> scene;
   double rest_energy;       // V at rest [J]
   double omega_max;         // at the start [rad/s]
   double buckling_rate;     // likewise [1/s], zero if no spring pushes sideways
@@ -24,7 +24,7 @@ struct AmplitudeRow {
 };
 
 // The largest natural frequency [rad/s] at the start; zero if nothing vibrates.
-double omega_max_of(const ReducedScene& scene);
+double omega_max_of(const Model& scene);
 
 // The scenes that the scene's generator draws with its parameter `vary` at each of the amplitudes.
 // Throws InvalidInput if there is no such generator or parameter, or no amplitude is possible.

@@ -66,7 +66,7 @@ struct Run {
   std::optional<double> pushed{};
 };
 
-Run run(const Method& method, const Options& options, const ReducedScene& scene, double until,
+Run run(const Method& method, const Options& options, const Model& scene, double until,
         const RunPlan& plan) {
   Run result{.summary = {}, .samples = {}, .end = scene.initial()};
   const double start = scene.energy(result.end) - plan.rest_energy;
@@ -147,7 +147,7 @@ std::string judged(const Run& r, const RunOutcome& result, double tolerated) {
 
 // The largest distance between a node's places in two states, over the largest displacement in the
 // motion.
-double difference(const ReducedScene& scene, const State& a, const State& b) {
+double difference(const Model& scene, const State& a, const State& b) {
   Scales scales;
   extend(scales, scene, a);
   extend(scales, scene, b);
@@ -156,7 +156,7 @@ double difference(const ReducedScene& scene, const State& a, const State& b) {
 
 }  // namespace
 
-RunOutcome run_outcome(const Method& method, const Options& options, const ReducedScene& scene,
+RunOutcome run_outcome(const Method& method, const Options& options, const Model& scene,
                        const RunPlan& plan) {
   const double until = std::max(plan.until, least_steps * options.step_size);
   const Run r = run(method, options, scene, until, plan);

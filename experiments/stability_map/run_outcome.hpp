@@ -3,7 +3,7 @@
 #include <string>
 
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::stability_map {
 
@@ -43,7 +43,7 @@ struct RunOutcome {
 // 200 steps and 400 times more. If X stays above three times its start value, growth is fitted to
 // the second half of that time, or all of it if it is short. Else it is fitted to the second half
 // of the run.
-RunOutcome run_outcome(const Method& method, const Options& options, const ReducedScene& scene,
+RunOutcome run_outcome(const Method& method, const Options& options, const Model& scene,
                        const RunPlan& plan);
 
 }  // namespace qddot::stability_map

@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
     const std::optional<Scene> rest = at_rest(subject);
     progress().stage("finding the modes of the rows");
     const auto rows = rows_of(subject, reductions_of(choice), rest, vary, amplitudes);
-    const double omega_max = omega_max_of(subject.reduced);
+    const double omega_max = omega_max_of(subject.model);
     std::vector<Limit> limits;
     std::vector<Cell> cells;
     Outcomes all;
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
       tabulate_linear(*linear_csv, taken);
       tabulate_adaptive(study, *adaptive_csv, taken);
       if (rest) {
-        const ReducedScene at_rest(*rest, Reductions::all_directions());
+        const Model at_rest(*rest, Reductions::all_directions());
         tabulate_modes(study, *modal_csv, taken, at_rest, step_size);
       }
       cells = cells_of(mapped(taken, !methods->empty()), rows, spaced(low, high, columns));

@@ -20,7 +20,7 @@ class Runs {
  public:
   Runs(const Method& method, double rtol, const Subject& subject, double limit)
       : method_(method),
-        scene_(subject.reduced),
+        scene_(subject.model),
         until_(subject.until),
         limit_(limit),
         options_(options_for(method, rtol, scene_)),
@@ -57,7 +57,7 @@ class Runs {
 
  private:
   const Method& method_;
-  const ReducedScene& scene_;
+  const Model& scene_;
   double until_, limit_;
   Options options_;
   std::unique_ptr<Integrator> integrator_;

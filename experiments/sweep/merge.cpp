@@ -76,7 +76,7 @@ WorkCosts measured_costs(const Task& task) {
   SceneChoice choice{.name = value_of(task.arguments, "--scene"), .no_reduce = {}};
   std::istringstream kept_as_drawn(value_of(task.arguments, "--no-reduce"));
   for (std::string one; std::getline(kept_as_drawn, one, ',');) choice.no_reduce.push_back(one);
-  const ReducedScene scene(started(load(choice), choice), reductions_of(choice));
+  const Model scene(started(load(choice), choice), reductions_of(choice));
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   Vec f(system.size());

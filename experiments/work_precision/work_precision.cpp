@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
       progress().stage("making the reference");
       reference = study.measures(reference_share) ? reference_for(subject, p.folder(), origin)
                                                   : kept_reference(subject, p.folder());
-      const Watch watch(subject.start, subject.reduced, subject.until, *reference);
+      const Watch watch(subject.start, subject.model, subject.until, *reference);
       Effort effort = usual;
       effort.options = options;
       effort.watch = &watch;
@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
       progress().begin(mine.size());
       for (const Method* method : mine) {
         taken.emplace_back();
-        measure_ladder(*method, subject.reduced, subject.until, *reference, effort, take, is_last);
+        measure_ladder(*method, subject.model, subject.until, *reference, effort, take, is_last);
         progress().finish(method->name + " is done");
       }
       if (study.is_divided()) return;
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
       effort.recall = points_of(study, "again ");
       again =
           time_front_again(from_coarse_to_fine(taken), *reference, asked, [&](const Point& point) {
-            return measure_point(*point.method, point.value, subject.reduced, subject.until,
+            return measure_point(*point.method, point.value, subject.model, subject.until,
                                  *reference, effort);
           });
     };
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
       const StudyEnd end{.interrupted_by = study.interrupted_by(),
                          .are_times_of_work = study.are_times_of_work()};
       if (reference) {
-        const Chart chart = chart_of(points, *reference, asked, StabilityMargins(subject.reduced));
+        const Chart chart = chart_of(points, *reference, asked, StabilityMargins(subject.model));
         for (const Point& point : points)
           points_csv.add({name, point, reference->certified.position});
         tabulate(*front_csv, name, chart);

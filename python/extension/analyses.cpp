@@ -16,25 +16,25 @@ namespace {
 using py::arg;
 
 // A scene in all directions in which its nodes may move, or an own system as it is.
-std::shared_ptr<const ReducedScene> all_directions(const Model& model) {
-  if (!model.start) return model.reduced;
-  return std::make_shared<const ReducedScene>(*model.start, Reductions::all_directions());
+std::shared_ptr<const Model> all_directions(const HeldModel& held) {
+  if (!held.start) return held.model;
+  return std::make_shared<const Model>(*held.start, Reductions::all_directions());
 }
 
 // The equilibrium downhill from the model's start; `length` [m] is the size of an own system.
-py::dict equilibrium(const Model& model, double length) {
-  std::shared_ptr<const ReducedScene> scene;
+py::dict equilibrium(const HeldModel& held, double length) {
+  std::shared_ptr<const Model> model;
   Equilibrium rest;
   double energy = 0;
   outside(1, [&](const std::stop_token&) {
-    scene = all_directions(model);
-    rest = model.start ? equilibrium_of(*scene)
-                       : find_equilibrium(scene->system(), scene->initial().q, length);
-    energy = scene->potential({0, rest.q, Vec::Zero(rest.q.size())});
+    model = all_directions(held);
+    rest = held.start ? equilibrium_of(*model)
+                      : find_equilibrium(model->system(), model->initial().q, length);
+    energy = model->potential({0, rest.q, Vec::Zero(rest.q.size())});
   });
-  const auto nodes = scene->expand({0, rest.q, Vec::Zero(rest.q.size())});
+  const auto nodes = model->expand({0, rest.q, Vec::Zero(rest.q.size())});
   return py::dict(arg("outcome") = name(rest.outcome), arg("message") = in_python(rest.message),
-                  arg("positions") = array_of(nodes, &Node::position, scene->dimension()),
+                  arg("positions") = array_of(nodes, &Node::position, model->dimension()),
                   arg("potential") = energy, arg("residual") = rest.residual,
                   arg("smallest_eigenvalue") = rest.smallest_eigenvalue,
                   arg("isolated") = rest.isolated, arg("flat_directions") = rest.flat_directions,
@@ -42,24 +42,24 @@ py::dict equilibrium(const Model& model, double length) {
 }
 
 // The lowest modes about the start: w^2 and their shapes as displacements of all nodes.
-py::dict modes(const Model& model, Index count) {
-  std::shared_ptr<const ReducedScene> scene;
+py::dict modes(const HeldModel& held, Index count) {
+  std::shared_ptr<const Model> model;
   NaturalModes lowest;
   double largest = 0;
   outside(1, [&](const std::stop_token&) {
-    scene = all_directions(model);
-    lowest = lowest_modes(scene->system(), scene->initial().q, count);
-    largest = largest_frequency(scene->system(), scene->initial().q);
+    model = all_directions(held);
+    lowest = lowest_modes(model->system(), model->initial().q, count);
+    largest = largest_frequency(model->system(), model->initial().q);
   });
-  const int d = scene->dimension();
+  const int d = model->dimension();
   py::list shapes;
   for (Index j = 0; j < lowest.shapes.cols(); ++j) {
     // A displacement is expanded as a velocity.
-    const auto nodes = scene->expand({0, scene->initial().q, lowest.shapes.col(j)});
+    const auto nodes = model->expand({0, model->initial().q, lowest.shapes.col(j)});
     shapes.append(array_of(nodes, &Node::velocity, d));
   }
   return py::dict(arg("squares") = array_of(lowest.squares), arg("shapes") = shapes,
-                  arg("omega_max") = largest, arg("finite") = finite_modes(scene->system()));
+                  arg("omega_max") = largest, arg("finite") = finite_modes(model->system()));
 }
 
 py::dict linear_step(const std::string& name, double h_omega, const py::dict& given) {
@@ -86,9 +86,9 @@ void add_analyses(py::module_& module) {
     const double measured = made_outside([&] { return measure::measured_limit(chosen); });
     return py::make_tuple(linear_limit(chosen), measured);
   });
-  module.def("largest_frequency", [](const Model& model) {
+  module.def("largest_frequency", [](const HeldModel& held) {
     return made_outside(
-        [&] { return largest_frequency(model.reduced->system(), model.reduced->initial().q); });
+        [&] { return largest_frequency(held.model->system(), held.model->initial().q); });
   });
 }
 

@@ -10,22 +10,22 @@
 #include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/reference/reference.hpp"
 #include "qddot/measure/speed/measurement.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::python {
 
 using Names = std::vector<std::string>;
 
 // The model that is run: the smallest system of a scene, or a system of the caller's own.
-struct Model {
-  std::shared_ptr<const ReducedScene> reduced;
+struct HeldModel {
+  std::shared_ptr<const Model> model;
   // The scene as its motion starts; null for a system of the caller's own.
   std::shared_ptr<const Scene> start{};
 };
 
 // A certified motion and its model.
 struct HeldReference {
-  Model model;
+  HeldModel of;
   measure::Reference reference;
 };
 

@@ -31,10 +31,10 @@ auto made_in(double seconds, const std::string& argument, const Make& make) {
   }
 }
 
-HeldReference reference_of(const Model& model, double until, double seconds,
+HeldReference reference_of(const HeldModel& held, double until, double seconds,
                            const std::string& argument) {
-  return {model, made_in(seconds, argument, [&] {
-            return make_reference(*model.reduced, until, seconds, model.start.get());
+  return {held, made_in(seconds, argument, [&] {
+            return make_reference(*held.model, until, seconds, held.start.get());
           })};
 }
 
@@ -59,8 +59,8 @@ py::dict reference_record(const HeldReference& held) {
 }
 
 py::dict end_of(const HeldReference& held) {
-  const auto nodes = held.model.reduced->expand(held.reference.end);
-  const int d = held.model.reduced->dimension();
+  const auto nodes = held.of.model->expand(held.reference.end);
+  const int d = held.of.model->dimension();
   return py::dict(arg("q") = array_of(nodes, &Node::position, d),
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
@@ -69,8 +69,8 @@ py::dict end_of(const HeldReference& held) {
 // reference.
 std::pair<double, double> errors_at(const HeldReference& held, const State& at, const double* q,
                                     const double* v) {
-  const auto exact = held.model.reduced->expand(at);
-  const int d = held.model.reduced->dimension();
+  const auto exact = held.of.model->expand(at);
+  const int d = held.of.model->dimension();
   std::vector<Node> nodes = exact;
   for (Node& node : nodes) {
     for (int c = 0; c < d; ++c) {
@@ -91,9 +91,8 @@ std::pair<double, double> errors_of(const HeldReference& held, const Doubles& q,
 // errors of positions.
 py::tuple errors_along(const HeldReference& held, const std::vector<double>& times,
                        const Doubles& q, const Doubles& v, double seconds) {
-  const ReferencePath path = made_in(seconds, "seconds", [&] {
-    return path_of(*held.model.reduced, held.reference, times, seconds);
-  });
+  const ReferencePath path = made_in(
+      seconds, "seconds", [&] { return path_of(*held.of.model, held.reference, times, seconds); });
   std::vector<double> positions, velocities;
   const py::ssize_t frame = times.empty() ? 0 : q.size() / std::ssize(times);
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -141,13 +140,12 @@ py::dict work_precision_of(const HeldReference& held, const Names& names, double
   std::string chart;
   outside(1, [&](const std::stop_token&) {
     std::optional<Watch> watch;
-    if (held.model.start) {  // only springs have momenta
-      watch.emplace(*held.model.start, *held.model.reduced, held.reference.end.t, held.reference);
+    if (held.of.start) {  // only springs have momenta
+      watch.emplace(*held.of.start, *held.of.model, held.reference.end.t, held.reference);
       effort.watch = &*watch;
     }
-    measured =
-        work_precision(*held.model.reduced, held.reference, methods_named(names), effort, see);
-    chart = record::chart_record(measured.chart(*held.model.reduced), "null");
+    measured = work_precision(*held.of.model, held.reference, methods_named(names), effort, see);
+    chart = record::chart_record(measured.chart(*held.of.model), "null");
   });
   py::list points;
   for (const Point& point : measured.points)
@@ -161,12 +159,12 @@ py::object candidate(const std::optional<Candidate>& c) {
                   arg("value") = c->value, arg("error") = c->error, arg("seconds") = c->seconds);
 }
 
-py::dict advise_on(const Model& model, double until, const std::vector<double>& accuracies,
+py::dict advise_on(const HeldModel& held, double until, const std::vector<double>& accuracies,
                    const std::string& of) {
   const AccuracyOf what = accuracy_of(of);
   for (const double accuracy : accuracies) require_accuracy(accuracy, "accuracy");
-  const Advices all = made_outside(
-      [&] { return advise(*model.reduced, until, accuracies, what, model.start.get()); });
+  const Advices all =
+      made_outside([&] { return advise(*held.model, until, accuracies, what, held.start.get()); });
   py::list each;
   for (const Advice& advice : all.for_each) {
     each.append(py::dict(arg("accuracy") = advice.accuracy, arg("why") = in_python(advice.why),
@@ -184,13 +182,13 @@ py::dict advise_on(const Model& model, double until, const std::vector<double>& 
 }
 
 // The trend of the energy of a scene, or of a system of the caller's own, in a run of a method.
-py::dict energy_trend_of(const Model& model, const std::string& name, const py::dict& given,
+py::dict energy_trend_of(const HeldModel& held, const std::string& name, const py::dict& given,
                          double until, double seconds) {
   const Options options = options_of(given);
   const DriftRun run = made_outside([&] {
     DriftRun made =
-        model.start ? energy_trend(*model.start, method(name), options, until, seconds)
-                    : energy_trend(model.reduced, Momenta(), method(name), options, until, seconds);
+        held.start ? energy_trend(*held.start, method(name), options, until, seconds)
+                   : energy_trend(held.model, Momenta(), method(name), options, until, seconds);
     stop_if_interrupted();
     return made;
   });
@@ -241,7 +239,7 @@ py::dict run_record(const std::string& method, double h, double h_omega, const E
   return record;
 }
 
-py::dict exchange(const Model& model, const Names& names, const std::vector<double>& h_omegas,
+py::dict exchange(const HeldModel& held, const Names& names, const std::vector<double>& h_omegas,
                   double until, std::optional<double> every) {
   struct Made {
     const Method* method;
@@ -256,8 +254,7 @@ py::dict exchange(const Model& model, const Names& names, const std::vector<doub
       throw std::invalid_argument(name + " chooses its steps by itself, so that it has no h w");
   }
   outside(1, [&](const std::stop_token&) {
-    excitation.emplace(
-        excitation_of(*model.start, ReducedScene(*model.start), until, model.start->name));
+    excitation.emplace(excitation_of(*held.start, Model(*held.start), until, held.start->name));
     if (every) excitation->every = *every;
     reference = certified_course(*excitation);
     for (const std::string& name : names) {

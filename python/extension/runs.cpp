@@ -15,7 +15,7 @@ using py::arg;
 // nodes, dimension), energies (3, times).
 class Frames {
  public:
-  Frames(const ReducedScene& model, std::vector<double> times, py::array_t<double>& motion,
+  Frames(const Model& model, std::vector<double> times, py::array_t<double>& motion,
          std::optional<py::array_t<double>>& energies)
       : model_(model),
         times_(std::move(times)),
@@ -45,7 +45,7 @@ class Frames {
     ++seen_;
   }
 
-  const ReducedScene& model_;
+  const Model& model_;
   std::vector<double> times_;
   double* motion_;
   std::size_t block_, frame_;
@@ -53,7 +53,7 @@ class Frames {
   std::size_t seen_ = 0;
 };
 
-py::dict end_of(const ReducedScene& model, const State& state) {
+py::dict end_of(const Model& model, const State& state) {
   const auto nodes = model.expand(state);
   const int d = model.dimension();
   return py::dict(arg("t") = state.t, arg("q") = array_of(nodes, &Node::position, d),
@@ -61,7 +61,7 @@ py::dict end_of(const ReducedScene& model, const State& state) {
 }
 
 // The kinetic energy, the potential energy and their sum [J]; None for a system without V.
-py::object energies_of(const ReducedScene& model, const State& state) {
+py::object energies_of(const Model& model, const State& state) {
   if (!model.system().has_potential()) return py::none();
   const double kinetic = model.kinetic(state);
   double potential = 0;
@@ -70,17 +70,17 @@ py::object energies_of(const ReducedScene& model, const State& state) {
 }
 
 // A run of a method, which fills the arrays of Frames.
-py::dict run(const Model& model, const std::string& name, const py::dict& given, double until,
+py::dict run(const HeldModel& held, const std::string& name, const py::dict& given, double until,
              const std::vector<double>& times, py::array_t<double> motion,
              std::optional<py::array_t<double>> energies, std::optional<double> most_seconds,
              int threads) {
   const Options options = options_of(given);
   std::optional<Simulation> simulation;
-  Frames frames(*model.reduced, times, motion, energies);
+  Frames frames(*held.model, times, motion, energies);
   Summary summary;
   double seconds = 0;
   outside(threads, [&](const std::stop_token& stop) {
-    simulation.emplace(model.reduced, method(name), options);
+    simulation.emplace(held.model, method(name), options);
     std::optional<Deadline> deadline;
     if (most_seconds) deadline.emplace(*most_seconds);
     seconds = seconds_of([&] {
@@ -89,19 +89,19 @@ py::dict run(const Model& model, const std::string& name, const py::dict& given,
   });
   return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
                   arg("seen") = frames.seen(),
-                  arg("end") = end_of(*model.reduced, simulation->state()),
-                  arg("energies") = energies_of(*model.reduced, simulation->state()),
+                  arg("end") = end_of(*held.model, simulation->state()),
+                  arg("energies") = energies_of(*held.model, simulation->state()),
                   arg("growth") = in_python(growth_warning(method(name), summary)));
 }
 
 // The motion to an accuracy.
-py::dict answer(const Model& model, double until, double accuracy, const std::string& of,
+py::dict answer(const HeldModel& held, double until, double accuracy, const std::string& of,
                 std::optional<double> most_seconds, int threads) {
   Wanted wanted{.accuracy = accuracy, .of = accuracy_of(of)};
   if (most_seconds) wanted.seconds = *most_seconds;
   Answer found;
   outside(threads, [&](const std::stop_token&) {
-    found = solve(*model.reduced, until, wanted, model.start.get());
+    found = solve(*held.model, until, wanted, held.start.get());
   });
   py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
@@ -112,26 +112,26 @@ py::dict answer(const Model& model, double until, double accuracy, const std::st
   if (!found.method) return record;
   record["method"] = found.method->name;
   record["value"] = found.value;
-  record["end"] = end_of(*model.reduced, found.end);
-  record["energies"] = energies_of(*model.reduced, found.end);
+  record["end"] = end_of(*held.model, found.end);
+  record["energies"] = energies_of(*held.model, found.end);
   return record;
 }
 
-std::string why_it_failed(const Model& model, const std::string& name, const py::dict& given,
+std::string why_it_failed(const HeldModel& held, const std::string& name, const py::dict& given,
                           double until, double seconds) {
   const Method& chosen = method(name);
   const Options options = options_of(given);
   std::string words;
   outside(1, [&](const std::stop_token& stop) {
-    Simulation simulation(model.reduced, chosen, options);
+    Simulation simulation(held.model, chosen, options);
     const Summary summary = simulation.advance(until, {}, stop);
     if (summary.outcome != Outcome::reached_end) {
-      words = diagnosis(chosen, options, *model.reduced, until, summary, seconds);
+      words = diagnosis(chosen, options, *held.model, until, summary, seconds);
       return;
     }
-    words = step_warning(chosen, options, *model.reduced);
+    words = step_warning(chosen, options, *held.model);
     if (words.empty()) {
-      words = loss_warning(chosen, options, *model.reduced, summary, until, seconds);
+      words = loss_warning(chosen, options, *held.model, summary, until, seconds);
     }
   });
   return in_python(words);

@@ -108,14 +108,14 @@ Reductions reductions_without(const Names& kept) {
 }
 
 // The smallest system of a scene as it starts (see reduced_for), for a method or for none.
-Model model_of(const std::shared_ptr<Scene>& start, const std::optional<std::string>& name,
-               const Names& kept) {
+HeldModel model_of(const std::shared_ptr<Scene>& start, const std::optional<std::string>& name,
+                   const Names& kept) {
   const Reductions reductions = reductions_without(kept);
-  auto reduced = made_outside([&] {
-    return std::make_shared<const ReducedScene>(
-        name ? reduced_for(method(*name), *start, reductions) : ReducedScene(*start, reductions));
+  auto model = made_outside([&] {
+    return std::make_shared<const Model>(name ? reduced_for(method(*name), *start, reductions)
+                                              : Model(*start, reductions));
   });
-  return {std::move(reduced), start};
+  return {std::move(model), start};
 }
 
 OwnForces::Force force_of(const py::object& given) {
@@ -132,10 +132,11 @@ OwnForces::Potential potential_of(const py::object& given) {
 
 // A system of the caller's own. `pattern`: rows and columns of K, which is made of differences of f
 // without `stiffness`. `is_linear`: whether K is the same everywhere.
-Model own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape, const py::object& force,
-                const py::object& potential, const py::object& stiffness,
-                const std::optional<std::pair<Indices, Indices>>& pattern, double length,
-                const Doubles& q, const Doubles& v, int dimension, bool is_linear) {
+HeldModel own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape,
+                    const py::object& force, const py::object& potential,
+                    const py::object& stiffness,
+                    const std::optional<std::pair<Indices, Indices>>& pattern, double length,
+                    const Doubles& q, const Doubles& v, int dimension, bool is_linear) {
   const Vec m = vec_of(mass);
   const bool computes = !stiffness.is_none();
   SymmetricMatrix own_pattern;
@@ -149,7 +150,7 @@ Model own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape, cons
       pairs.emplace_back(pattern->first.at(a), pattern->second.at(a));
     system = std::make_shared<DifferencedStiffness>(system, pairs, length);
   }
-  return {std::make_shared<const ReducedScene>(system, State{0, vec_of(q), vec_of(v)}, dimension)};
+  return {std::make_shared<const Model>(system, State{0, vec_of(q), vec_of(v)}, dimension)};
 }
 
 Vec unknowns(const System& system, const Doubles& q) {
@@ -190,13 +191,13 @@ double potential_at(const System& system, const Doubles& q) {
   return v;
 }
 
-py::dict explanation_of(const Model& model) {
+py::dict explanation_of(const HeldModel& held) {
   using py::arg;
   Explanation e;
   std::string words;
   outside(1, [&](const std::stop_token&) {
-    e = explain(*model.start, *model.reduced);
-    words = explanation_in_words(e, *model.start);
+    e = explain(*held.start, *held.model);
+    words = explanation_in_words(e, *held.start);
   });
   py::list findings;
   for (const Finding& finding : e.findings)
@@ -278,32 +279,32 @@ void add_scenes(py::module_& module) {
 }
 
 void add_models(py::module_& module) {
-  py::class_<Model> model(module, "Model");
+  py::class_<HeldModel> model(module, "Model");
   const auto has = [&](const char* name, const auto& get) {
     model.def_property_readonly(name, get);
   };
-  has("nodes", [](const Model& m) { return m.reduced->expand(m.reduced->initial()).size(); });
-  has("dimension", [](const Model& m) { return m.reduced->dimension(); });
-  has("size", [](const Model& m) { return m.reduced->system().size(); });
-  has("mass", [](const Model& m) { return array_of(m.reduced->system().mass()); });
-  has("q", [](const Model& m) { return array_of(m.reduced->initial().q); });
-  has("v", [](const Model& m) { return array_of(m.reduced->initial().v); });
-  has("has_potential", [](const Model& m) { return m.reduced->system().has_potential(); });
-  has("has_stiffness", [](const Model& m) { return m.reduced->system().has_stiffness(); });
-  model.def("force", [](const Model& self, const Doubles& q) {
-    return force_at(self.reduced->system(), q);
+  has("nodes", [](const HeldModel& m) { return m.model->expand(m.model->initial()).size(); });
+  has("dimension", [](const HeldModel& m) { return m.model->dimension(); });
+  has("size", [](const HeldModel& m) { return m.model->system().size(); });
+  has("mass", [](const HeldModel& m) { return array_of(m.model->system().mass()); });
+  has("q", [](const HeldModel& m) { return array_of(m.model->initial().q); });
+  has("v", [](const HeldModel& m) { return array_of(m.model->initial().v); });
+  has("has_potential", [](const HeldModel& m) { return m.model->system().has_potential(); });
+  has("has_stiffness", [](const HeldModel& m) { return m.model->system().has_stiffness(); });
+  model.def("force", [](const HeldModel& self, const Doubles& q) {
+    return force_at(self.model->system(), q);
   });
-  model.def("stiffness", [](const Model& self, const Doubles& q) {
-    return stiffness_at(self.reduced->system(), q);
+  model.def("stiffness", [](const HeldModel& self, const Doubles& q) {
+    return stiffness_at(self.model->system(), q);
   });
-  model.def("potential", [](const Model& self, const Doubles& q) {
-    return potential_at(self.reduced->system(), q);
+  model.def("potential", [](const HeldModel& self, const Doubles& q) {
+    return potential_at(self.model->system(), q);
   });
   // The positions and velocities of all nodes of the scene, from the unknowns q and v.
-  model.def("nodes_at", [](const Model& self, const Doubles& q, const Doubles& v, double t) {
-    const System& system = self.reduced->system();
-    const auto nodes = self.reduced->expand({t, unknowns(system, q), unknowns(system, v)});
-    const int d = self.reduced->dimension();
+  model.def("nodes_at", [](const HeldModel& self, const Doubles& q, const Doubles& v, double t) {
+    const System& system = self.model->system();
+    const auto nodes = self.model->expand({t, unknowns(system, q), unknowns(system, v)});
+    const int d = self.model->dimension();
     return py::make_tuple(array_of(nodes, &Node::position, d), array_of(nodes, &Node::velocity, d));
   });
   model.def("explain", &explanation_of);

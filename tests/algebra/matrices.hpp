@@ -33,7 +33,7 @@ struct Matrix {
 
 // The masses and the K of a scene whose coordinates are moved by up to `part` of the largest.
 inline Matrix displaced(const Scene& scene, const Reductions& reductions, double part) {
-  const ReducedScene reduced(scene, reductions);
+  const Model reduced(scene, reductions);
   std::mt19937 random(13);
   const Vec& q = reduced.initial().q;
   const double size = q.size() > 0 ? std::max(q.cwiseAbs().maxCoeff(), 1e-3) : 0;

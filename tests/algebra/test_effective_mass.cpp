@@ -31,7 +31,7 @@ Case scene_case(const std::string& name, const GeneratorValues& values, double s
                 bool some_massless = false) {
   Scene scene = stretched(draw(name, values), stretch);
   for (std::size_t i = 0; some_massless && i < scene.nodes.size(); i += 2) scene.nodes[i].mass = 0;
-  const auto reduced = std::make_shared<ReducedScene>(scene, Reductions::only({Reduction::pins}));
+  const auto reduced = std::make_shared<Model>(scene, Reductions::only({Reduction::pins}));
   return {{reduced, &reduced->system()}, reduced->initial().q};
 }
 

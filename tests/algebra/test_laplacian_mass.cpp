@@ -41,7 +41,7 @@ BOOST_AUTO_TEST_CASE(it_solves_on_cloths_as_they_are_and_reduced_held_or_in_part
     for (const Reductions& reductions :
          {Reductions(), Reductions().without(Reduction::mirror),
           Reductions().without(Reduction::pins), Reductions::only({Reduction::pins})}) {
-      const ReducedScene reduced(scene, reductions);
+      const Model reduced(scene, reductions);
       check_solve(reduced.system(), 1e-4);
     }
   }
@@ -54,16 +54,16 @@ BOOST_AUTO_TEST_CASE(it_solves_on_cloths_as_they_are_and_reduced_held_or_in_part
 
 BOOST_AUTO_TEST_CASE(axes_that_are_alike_have_one_matrix) {
   const Scene scene = cloth(11);
-  const ReducedScene whole(scene, Reductions().without(Reduction::mirror));
+  const Model whole(scene, Reductions().without(Reduction::mirror));
   BOOST_TEST((LaplacianMass(whole.system()).sizes() == std::vector<Index>{11 * 11 - 2}));
   // The middle column has no x in the mirror x = 0.5, and links to images have another sign there.
-  const ReducedScene half(scene);
+  const Model half(scene);
   BOOST_TEST((LaplacianMass(half.system()).sizes() == std::vector<Index>{11 * 6 - 1, 11 * 5 - 1}));
 }
 
 BOOST_AUTO_TEST_CASE(four_columns_are_solved_for_as_each_by_itself) {
   for (const int nodes : {2, 3, 9, 40}) {
-    const ReducedScene scene(cloth(nodes), Reductions().without(Reduction::mirror));
+    const Model scene(cloth(nodes), Reductions().without(Reduction::mirror));
     const System& system = scene.system();
     const SymmetricMatrix k = stiffness_at(system, scene.initial().q);
     const auto factors = make_multifrontal(k, system.mass());

@@ -156,8 +156,8 @@ BOOST_AUTO_TEST_CASE(what_is_loose_is_flat_and_hardly_grows) {
   BOOST_TEST(signs.flat_rate < 1e-5);
   // Nothing holds a chain at rest lengths across, and nothing pushes it there.
   for (const double pins : {0.0, 1.0, 2.0}) {
-    const ReducedScene chain(draw("chain", {{"nodes", 40}, {"pinned_ends", pins}}),
-                             Reductions::all_directions());
+    const Model chain(draw("chain", {{"nodes", 40}, {"pinned_ends", pins}}),
+                      Reductions::all_directions());
     BOOST_TEST(qddot::curvature_signs(chain.system(), chain.initial().q).negative == 0);
   }
   // Without springs nothing is known to rise, nor to grow.
@@ -185,8 +185,8 @@ BOOST_AUTO_TEST_CASE(soft_modes_beside_stiff_ones_have_their_own_digits) {
 
 BOOST_AUTO_TEST_CASE(large_cloth_is_counted_as_a_small_one_is) {
   for (const double stretch : {1.1, 1.0, 0.9}) {
-    const ReducedScene reduced(stretched(draw("cloth", {{"nodes", 13}}), stretch),
-                               Reductions::all_directions());
+    const Model reduced(stretched(draw("cloth", {{"nodes", 13}}), stretch),
+                        Reductions::all_directions());
     check(reduced.system(), reduced.initial().q);
   }
 }

@@ -42,8 +42,8 @@ double position_tolerance(const Equilibrium& e) {
   return 100 * e.residual / e.smallest_eigenvalue + 100 * eps;
 }
 
-ReducedScene drawn(const std::string& name, const GeneratorValues& values) {
-  return ReducedScene(draw(name, values), Reductions::all_directions());
+Model drawn(const std::string& name, const GeneratorValues& values) {
+  return Model(draw(name, values), Reductions::all_directions());
 }
 
 // Nodes on a line along x between two pins that stand closer than the springs are long.
@@ -154,8 +154,8 @@ BOOST_AUTO_TEST_CASE(what_nothing_holds_falls_for_ever) {
   // A cloth with one node that hangs on nothing.
   Scene torn = draw("cloth", {{"nodes", 8}});
   std::erase_if(torn.springs, [](const Spring& s) { return s.nodes[0] == 20 || s.nodes[1] == 20; });
-  const ReducedScene torn_cloth(torn, Reductions::all_directions());
-  for (const ReducedScene* scene : {&free_chain, &torn_cloth}) {
+  const Model torn_cloth(torn, Reductions::all_directions());
+  for (const Model* scene : {&free_chain, &torn_cloth}) {
     const Equilibrium e = find_equilibrium(scene->system(), scene->initial().q, 1);
     BOOST_TEST((e.outcome == Outcome::unbounded));
     BOOST_TEST(e.message.find("falls for ever") != e.message.npos);
@@ -263,7 +263,7 @@ BOOST_AUTO_TEST_CASE(rest_does_not_depend_on_directions_and_numbers) {
                       {7, 2, 0, 11, 5, 9, 3, 1, 10, 4, 8, 6});
   };
   const auto at_rest = [](Scene s) {
-    const ReducedScene reduced(s, Reductions::all_directions());
+    const Model reduced(s, Reductions::all_directions());
     const Equilibrium e = find_equilibrium(reduced.system(), reduced.initial().q, 1);
     check_minimum(reduced.system(), e, 1);
     BOOST_TEST(position_tolerance(e) < 1e-10);

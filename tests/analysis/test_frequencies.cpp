@@ -36,7 +36,7 @@ Case scene_case(const std::string& name, const GeneratorValues& values, double s
                 bool pinned = true) {
   Scene scene = stretched(draw(name, values), stretch);
   for (Node& node : scene.nodes) node.pinned = node.pinned && pinned;
-  const auto reduced = std::make_shared<ReducedScene>(scene, Reductions::all_directions());
+  const auto reduced = std::make_shared<Model>(scene, Reductions::all_directions());
   return {{reduced, &reduced->system()}, reduced->initial().q};
 }
 

@@ -51,7 +51,7 @@ double magnitude(Real x) {
 
 // The reference's true errors in the units of what it certifies, over the nodes with mass.
 template <class Real, class Model>
-Errors true_errors(const ReducedScene& scene, const Scene& drawn, const Reference& reference,
+Errors true_errors(const Model& scene, const Scene& drawn, const Reference& reference,
                    const PlainMotion<Real, Model>& motion, Real energy) {
   const auto nodes = scene.expand(reference.end);
   Errors errors = no_error;
@@ -84,8 +84,8 @@ Errors true_errors(const ReducedScene& scene, const Scene& drawn, const Referenc
 // The motion whose reference is tried, the model of it, and its truth, not yet advanced.
 template <class Motion>
 void try_one(std::uint64_t seed, const std::string& kind, const Scene& drawn, bool is_scene,
-             const ReducedScene& scene, Motion motion, int most_steps, int most_kinks,
-             double seconds, bool shows_all, Tally& tally) {
+             const Model& scene, Motion motion, int most_steps, int most_kinks, double seconds,
+             bool shows_all, Tally& tally) {
   if (!scene.massless_nodes().empty() || scene.system().size() == 0) {
     ++tally.skipped;
     return;
@@ -151,7 +151,7 @@ double tell(const char* what, std::vector<double> ratios) {
 
 void try_random(std::uint64_t seed, double seconds, bool shows_all, Tally& tally) {
   const RandomScene random = random_scene(seed);
-  try_one(seed, random.kind, random.scene, true, ReducedScene(random.scene),
+  try_one(seed, random.kind, random.scene, true, Model(random.scene),
           PlainMotion<Quadruple>(random.scene, plain_tolerance), most_plain_steps, most_plain_kinks,
           seconds, shows_all, tally);
 }

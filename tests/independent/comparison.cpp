@@ -102,9 +102,8 @@ PlainEnergies plain_energies(const PlainModel<long double>& model, const std::ve
 }
 
 // Differences of the reduced scene's energies and force at a state to those of all nodes.
-void compare_state(const ReducedScene& reduced, const PlainModel<long double>& model,
-                   const State& state, std::mt19937_64& random, const std::string& where,
-                   Comparisons& all) {
+void compare_state(const Model& reduced, const PlainModel<long double>& model, const State& state,
+                   std::mt19937_64& random, const std::string& where, Comparisons& all) {
   ++all.states;
   const auto nodes = reduced.expand(state);
   const PlainEnergies plain = plain_energies(model, nodes);
@@ -148,7 +147,7 @@ struct End {
   std::vector<Node> nodes;
 };
 
-End run(const ReducedScene& reduced, const Method& method, double knob, double until) {
+End run(const Model& reduced, const Method& method, double knob, double until) {
   Options options;
   (method.knob == Knob::step_size ? options.step_size : options.rtol) = knob;
   State state = reduced.initial();
@@ -160,13 +159,13 @@ End run(const ReducedScene& reduced, const Method& method, double knob, double u
 }
 
 // A step that resolves the fastest frequency of all springs, lest a spring turn over in one.
-double resolving_step(const ReducedScene& reduced, double until) {
+double resolving_step(const Model& reduced, double until) {
   const double w = frequency_bound(reduced.system(), reduced.initial().q);
   // Massless nodes have no frequency; the others' horizon is some vibrations.
   return until / (std::isfinite(w) ? std::max(32.0, std::ceil(until * w / 0.2)) : 1000.0);
 }
 
-bool can_take(const Method& method, const ReducedScene& reduced) {
+bool can_take(const Method& method, const Model& reduced) {
   return applies_to(method, reduced.system()) &&
          (method.is(Trait::accepts_massless) || !reduced.system().has_massless());
 }
@@ -174,7 +173,7 @@ bool can_take(const Method& method, const ReducedScene& reduced) {
 // Three runs at smaller and smaller options. What a method still changes by is about what is wrong
 // with it. Springs that pass length zero closely make that irregular; a wrong model or formula is
 // off by what no knob changes.
-void compare_runs(const DrawnMotion& motion, const ReducedScene& reduced, const Method& method,
+void compare_runs(const DrawnMotion& motion, const Model& reduced, const Method& method,
                   std::array<double, 3> options, const std::string& where, Comparisons& all) {
   constexpr double irregular = 30;
   std::array<End, 3> ends;
@@ -281,7 +280,7 @@ Comparisons compare_states(const Scene& scene, std::uint64_t seed) {
   std::normal_distribution<double> normal;
   const PlainModel<long double> model(scene);
   for (const auto& [name, set] : sets_of_reductions()) {
-    const ReducedScene reduced(scene, set);
+    const Model reduced(scene, set);
     State state = reduced.initial();
     compare_state(reduced, model, state, random, name + ", at the start", all);
     double drawn = 0;
@@ -312,7 +311,7 @@ Comparisons compare_reductions(const DrawnMotion& motion) {
   if (motion.known_until() == 0) return all;
   ++all.motions;
   for (const auto& [name, set] : sets_of_reductions()) {
-    const ReducedScene reduced(motion.scene(), set);
+    const Model reduced(motion.scene(), set);
     if (reduced.system().has_massless()) {
       compare_runs(motion, reduced, *find_method("ida"), {1e-6, 1e-7, 1e-8}, name, all);
     } else {
@@ -327,7 +326,7 @@ Comparisons compare_methods(const DrawnMotion& motion) {
   Comparisons all;
   if (motion.known_until() == 0) return all;
   ++all.motions;
-  const ReducedScene reduced(motion.scene());
+  const Model reduced(motion.scene());
   const double h = resolving_step(reduced, motion.until());
   for (const Method& method : methods()) {
     if (!can_take(method, reduced)) continue;

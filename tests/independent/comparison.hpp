@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/kit/plain_motion.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot {
 inline namespace tests {

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "tests/integrators/runs.hpp"
 
 namespace qddot {
@@ -13,14 +13,12 @@ inline namespace tests {
 inline const Reductions with_and_without[] = {Reductions::only({Reduction::pins}), {}};
 
 // The soft cloth of nodes x nodes in its stiff frame.
-inline ReducedScene framed_cloth(int nodes) {
-  return ReducedScene(
-      generate(*find_generator("framed_cloth"), {{"nodes", nodes}}, "framed_cloth"));
+inline Model framed_cloth(int nodes) {
+  return Model(generate(*find_generator("framed_cloth"), {{"nodes", nodes}}, "framed_cloth"));
 }
 
 // The state of a scene at t_end; throws where that is not reached.
-inline State state_after(const ReducedScene& reduced, const Method& method, double h,
-                         double t_end) {
+inline State state_after(const Model& reduced, const Method& method, double h, double t_end) {
   // Solved to rounding where implicit, to compare ends.
   Run r = run(method, reduced.system(), reduced.initial(), t_end,
               {.step_size = h, .solve_tolerance = 1e-12});
@@ -29,7 +27,7 @@ inline State state_after(const ReducedScene& reduced, const Method& method, doub
 }
 inline std::vector<Node> nodes_after(const Scene& scene, const Reductions& reductions,
                                      const Method& method, double h, double t_end) {
-  const ReducedScene reduced(scene, reductions);
+  const Model reduced(scene, reductions);
   return reduced.expand(state_after(reduced, method, h, t_end));
 }
 

@@ -71,7 +71,7 @@ Course course(std::string name, const Problem& problem) {
 }
 
 Course course(std::string name, const Scene& scene) {
-  const auto reduced = std::make_shared<ReducedScene>(scene);
+  const auto reduced = std::make_shared<Model>(scene);
   return {std::move(name), {reduced, &reduced->system()}, reduced->initial()};
 }
 

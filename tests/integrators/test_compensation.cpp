@@ -48,7 +48,7 @@ double largest_change(const Method& method, double h, int steps, bool compensate
 // The largest energy error of an orbit, by what is too accurate to err by anything but rounding.
 double orbit_energy_error(bool compensated) {
   const Scene scene = generate(*find_generator("orbit"), {}, "orbit");
-  const ReducedScene orbit(scene);
+  const Model orbit(scene);
   const double start = orbit.energy(orbit.initial()), h = 0.004;
   double largest = 0;
   Observer observer{{}, [&](const State& state) {

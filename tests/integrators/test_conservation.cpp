@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(a_free_pair_swings_at_its_frequency_about_a_centre_that_mov
 }
 
 BOOST_AUTO_TEST_CASE(a_pair_on_a_line_is_solved_exactly) {
-  const ReducedScene reduced(drifting_pair(1.1, 0, {2, 0, 0}));
+  const Model reduced(drifting_pair(1.1, 0, {2, 0, 0}));
   BOOST_TEST(reduced.system().stiffness_is_constant());
   const auto nodes = reduced.expand(state_after(reduced, method_named("exact"), t_end, t_end));
   const double apart = nodes[1].position.x() - nodes[0].position.x();

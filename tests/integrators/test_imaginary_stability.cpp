@@ -25,9 +25,9 @@ ButcherTable stock_table() {
 template <ButcherTable (*make_table)()>
 class Unbounded final : public Arkode {
  public:
-  Unbounded(const Method& method, const System& system, const Options& options)
-      : Arkode(method, system, options, {.explicit_table = make_table().get()}, right_hand_side,
-               nullptr, nullptr, system) {}
+  explicit Unbounded(SystemRun& run)
+      : Arkode(run, {.explicit_table = make_table().get()}, right_hand_side, nullptr, nullptr,
+               run.system()) {}
 };
 
 // A method and its table. The limit is that of |R| = 1 in the literature, for tables of as many
@@ -40,7 +40,7 @@ struct Named {
 };
 template <ButcherTable (*make_table)()>
 Named named(const char* method, std::optional<double> limit = {}) {
-  return {method, make_table, limit, create<Unbounded<make_table>>};
+  return {method, make_table, limit, create_steps<Unbounded<make_table>>};
 }
 // |R|^2 is 1 at the limit. Order 4: 1 - y^6/72 + y^8/576, at y = 2 sqrt 2. Order 3: 1 - y^4/12 +
 // y^6/36, at y = sqrt 3. Order 2: 1 + y^4/4, only at 0.

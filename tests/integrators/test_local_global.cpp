@@ -46,7 +46,7 @@ std::vector<Problem> networks() {
 
 // A cloth that has fallen for 0.1 s.
 struct Fallen {
-  ReducedScene scene{generate(*find_generator("cloth"), {{"nodes", 12}}, "test")};
+  Model scene{generate(*find_generator("cloth"), {{"nodes", 12}}, "test")};
   State state =
       run(method_named("verlet"), scene.system(), scene.initial(), 0.1, {.step_size = 1e-4}).state;
 };

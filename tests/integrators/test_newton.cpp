@@ -28,7 +28,7 @@ struct Minimisation {
       : start(p.initial), h(size), system(make_mass_spring(p.network)) {}
 
   double objective(const Vec& v) const {
-    return system->kinetic(v - start.v) + system->potential(start.q + h * v);
+    return system->kinetic(v - start.v) + system->potential(Vec(start.q + h * v));
   }
   Vec gradient(const Vec& v) const {
     return system->mass().cwiseProduct(v - start.v) - h * force_at(*system, start.q + h * v);

@@ -2,7 +2,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "tests/integrators/runs.hpp"
 
 BOOST_AUTO_TEST_SUITE(slack)
@@ -189,7 +189,7 @@ BOOST_DATA_TEST_CASE(what_would_fold_across_the_line_that_a_plane_scene_is_left_
                  {.position = {0, -0.95, 0}, .mass = 0},
                  {.position = {0, -1.95, 0}, .velocity = {0, 3, 0}, .mass = 2}};
   scene.springs = {{{0, 1}, {200, 0.8}}, {{1, 2}, {300, 0.9}}};
-  const ReducedScene reduced(scene, Reductions().without(Reduction::massless));
+  const Model reduced(scene, Reductions().without(Reduction::massless));
   BOOST_TEST(reduced.system().size() == 2);
   const Run r =
       run(method, reduced.system(), reduced.initial(), 0.2, options_of(method, 1e-3, 1e-7));

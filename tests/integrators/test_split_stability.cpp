@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(up_to_its_limit_no_vibration_grows_and_beyond_it_one_does) 
 }
 
 BOOST_AUTO_TEST_CASE(steps_are_held_to_the_limit_of_the_soft_springs) {
-  const ReducedScene scene = framed_cloth(10);
+  const Model scene = framed_cloth(10);
   const System& system = scene.system();
   const State& start = scene.initial();
   const double until = 0.1;

@@ -51,7 +51,7 @@ BOOST_DATA_TEST_CASE(newtons_matrix_is_that_of_the_stiff_springs_alone, pairs(),
 }
 
 BOOST_AUTO_TEST_CASE(a_stiff_frame_leaves_steps_as_long_as_the_cloths_own) {
-  const ReducedScene scene = framed_cloth(8);
+  const Model scene = framed_cloth(8);
   const auto run_by = [&](const char* method, double h) {
     return run(method_named(method), scene.system(), scene.initial(), 0.05, {.step_size = h});
   };

@@ -11,7 +11,7 @@ using namespace qddot;
 // A frame in which h w_max is some hundreds for the steps that the cloth needs. Whatever the
 // iteration leaves in it is multiplied by the square of that where it is taken for a motion.
 BOOST_AUTO_TEST_CASE(a_coarser_tolerance_costs_no_more_steps_however_stiff_the_scene) {
-  const ReducedScene scene = framed_cloth(10);
+  const Model scene = framed_cloth(10);
   for (const char* method : {"arkode_dirk2", "arkode_dirk3", "arkode_dirk4", "arkode_dirk5"}) {
     const auto steps = [&](double rtol) {
       const Run r = run(method_named(method), scene.system(), scene.initial(), 0.1,

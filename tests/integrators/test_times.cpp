@@ -39,7 +39,7 @@ BOOST_DATA_TEST_CASE(an_exception_of_the_observer_comes_out_as_itself, general_m
 // good.
 BOOST_DATA_TEST_CASE(a_stiff_run_is_repeated_though_its_last_steps_are_long, methods_of(Knob::rtol),
                      method) {
-  const ReducedScene scene = framed_cloth(10);
+  const Model scene = framed_cloth(10);
   if (!evaluates_stiffness(method) || method.asks(Need::split_forces)) return;
   const auto integrator = make_integrator(method, scene.system(), {.rtol = 1e-3, .speed = 3});
   State first = scene.initial(), second = scene.initial();

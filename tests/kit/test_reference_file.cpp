@@ -23,7 +23,7 @@ constexpr double until = 0.1;
 // The reference of a scene that the folder keeps or gets.
 Reference kept(const std::string& name, double horizon, const Folder& folder) {
   const Scene drawn = load_scene(name);
-  return reference_for(drawn, drawn, ReducedScene(drawn), horizon, folder.path(),
+  return reference_for(drawn, drawn, Model(drawn), horizon, folder.path(),
                        {{"command_line", "test"}, {"compiler", "test"}, {"made", "here"}});
 }
 
@@ -38,7 +38,7 @@ Reference read_back(const Reference& made) {
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(json_brings_back_every_bit) {
-  const Reference made = make_reference(ReducedScene(load_scene("pair")), 0.3, 1);
+  const Reference made = make_reference(Model(load_scene("pair")), 0.3, 1);
   const Reference read = read_back(made);
   BOOST_TEST((read.end.q == made.end.q && read.end.v == made.end.v));
   BOOST_TEST(made.perturbation_growth > 0);
@@ -167,9 +167,9 @@ BOOST_AUTO_TEST_CASE(a_massless_node_has_no_reference) {
   Scene scene{.name = "massless", .dimension = 1};
   scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}}};
   scene.springs = {{{0, 1}, {.stiffness = 1}}};
-  BOOST_CHECK_THROW(require_reference_exists(ReducedScene(scene), "here"), InvalidInput);
+  BOOST_CHECK_THROW(require_reference_exists(Model(scene), "here"), InvalidInput);
   scene.nodes[1].mass = 1;
-  BOOST_CHECK_NO_THROW(require_reference_exists(ReducedScene(scene), "here"));
+  BOOST_CHECK_NO_THROW(require_reference_exists(Model(scene), "here"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -29,7 +29,7 @@ Scene pairs(std::optional<double> stiff_above) {
 
 BOOST_AUTO_TEST_CASE(all_methods_that_apply_are_selected_and_no_other) {
   for (const Scene& scene : {pairs({}), pairs(12), load_scene("oscillator")}) {
-    const ReducedScene reduced(scene);
+    const Model reduced(scene);
     const auto selected = select_methods({}, reduced, "scene");
     for (const Method& method : methods()) {
       BOOST_TEST(std::ranges::count(selected, &method) == applies_to(method, reduced.system()),

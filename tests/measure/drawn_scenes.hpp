@@ -16,9 +16,8 @@ inline Scene drawn(const char* generator, const GeneratorValues& values = {}) {
 // The judge of the case: a reference that is ten times as accurate as the requested accuracy. Empty
 // if the case has more nodes, if nothing moves in it, or if no such reference is found in about
 // `seconds`.
-inline std::optional<measure::Reference> judge(const judged_advice::Case& drawn,
-                                               const ReducedScene& model, std::size_t most_nodes,
-                                               double seconds) {
+inline std::optional<measure::Reference> judge(const judged_advice::Case& drawn, const Model& model,
+                                               std::size_t most_nodes, double seconds) {
   constexpr double part = 0.1;
   if (model.system().size() == 0 || drawn.scene.nodes.size() > most_nodes) return {};
   try {

@@ -329,7 +329,7 @@ BOOST_AUTO_TEST_CASE(a_point_has_the_margin_of_its_step) {
 
 BOOST_AUTO_TEST_CASE(a_row_has_the_margin_of_its_step_against_the_scenes_limit) {
   // w = 10 rad/s: verlet's limit is 0.2 s, and h = 0.1 s half of it; rk4's sqrt(8)/10 s.
-  const ReducedScene scene(drawn("oscillator"));
+  const Model scene(drawn("oscillator"));
   const std::vector<Point> points = {point("verlet", 5e-2, 1), point("rk4", 5e-4, 2)};
   const Chart chart = chart_of(points, reference(), {1e-1, 1e-3}, StabilityMargins(scene));
   BOOST_TEST(chart.front[0].stability_margin == 0.5, boost::test_tools::tolerance(1e-9));

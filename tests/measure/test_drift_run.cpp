@@ -43,7 +43,7 @@ struct Study {
   }
 
   Scene drawn;
-  ReducedScene scene{drawn};
+  Model scene{drawn};
   Momenta momenta{drawn};
 };
 
@@ -160,8 +160,8 @@ BOOST_AUTO_TEST_CASE(without_k_the_trend_is_that_of_the_energy) {
     double potential(const At& at) const override { return 50 * at.q.squaredNorm(); }
     void force(const At& at, MutableVec f) const override { f = -100 * at.q; }
   };
-  const auto own = std::make_shared<const ReducedScene>(std::make_shared<const Pull>(),
-                                                        State{0, Vec::Ones(1), Vec::Zero(1)}, 1);
+  const auto own = std::make_shared<const Model>(std::make_shared<const Pull>(),
+                                                 State{0, Vec::Ones(1), Vec::Zero(1)}, 1);
   const Options options{.step_size = 0.02};
   for (const auto& [method, verdict] :
        {std::pair{"verlet", "bounded"}, std::pair{"rk4", "drifts"}}) {

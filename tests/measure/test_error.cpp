@@ -42,7 +42,7 @@ const auto plain = Reductions::only({Reduction::pins});
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(errors_are_the_worst_node_over_its_scale) {
-  const ReducedScene scene(three_nodes(), plain);
+  const Model scene(three_nodes(), plain);
   const State reference = scene.initial();
   State state = reference;
   state.q.head<3>() += Eigen::Vector3d(0.3, 0, 0.4);
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(errors_are_the_worst_node_over_its_scale) {
 }
 
 BOOST_AUTO_TEST_CASE(where_a_scale_is_zero_the_error_is_absolute) {
-  const ReducedScene scene(three_nodes(), plain);
+  const Model scene(three_nodes(), plain);
   const State reference = scene.initial();
   State state = reference;
   state.q[0] += 0.5;
@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_CASE(where_a_scale_is_zero_the_error_is_absolute) {
 }
 
 BOOST_AUTO_TEST_CASE(a_state_has_no_error_against_itself) {
-  const ReducedScene scene(three_nodes(), plain);
+  const Model scene(three_nodes(), plain);
   const State& state = scene.initial();
   for (const Scales& scales : {Scales{}, Scales{1e-300, 1e-300, 1e-300}}) {
     const Errors errors = errors_between(scene, state, state, scene.energy(state), scales);
@@ -77,7 +77,7 @@ BOOST_AUTO_TEST_CASE(a_state_has_no_error_against_itself) {
 }
 
 BOOST_AUTO_TEST_CASE(scales_keep_the_largest_of_all_states) {
-  const ReducedScene scene(three_nodes(), plain);
+  const Model scene(three_nodes(), plain);
   Scales scales;
   extend(scales, scene, scene.initial());
   BOOST_TEST(scales.displacement == 0);
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(scales_keep_the_largest_of_all_states) {
 
 BOOST_AUTO_TEST_CASE(each_part_is_measured_by_its_own_motion) {
   // One of amplitude 1 m and one of 1e-10 m.
-  const ReducedScene two(two_oscillators(6 + 1e-10));
+  const Model two(two_oscillators(6 + 1e-10));
   BOOST_TEST_REQUIRE(two.parts().size() == 2u);
   const State start = two.initial();
   State swung = start;
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(each_part_is_measured_by_its_own_motion) {
 }
 
 BOOST_AUTO_TEST_CASE(positions_alone_have_the_same_error) {
-  const ReducedScene two(two_oscillators(6));
+  const Model two(two_oscillators(6));
   State swung = two.initial(), off = two.initial();
   swung.q += Vec{{1, 1e-3}};
   off.q += Vec{{1e-3, -2e-5}};
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(positions_alone_have_the_same_error) {
 BOOST_AUTO_TEST_CASE(what_is_no_number_is_no_small_error_of_an_own_system) {
   const auto system = std::make_shared<const ChainWithStiffness>();
   const Index n = system->size();
-  const ReducedScene own(system, {0, Vec::Zero(n), Vec::Zero(n)}, 1);
+  const Model own(system, {0, Vec::Zero(n), Vec::Zero(n)}, 1);
   Scales scales;
   State off = own.initial();
   off.q.setOnes();
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_number_is_no_small_error_of_an_own_system) {
 }
 
 BOOST_AUTO_TEST_CASE(a_part_that_only_rounds_is_measured_by_the_others) {
-  const ReducedScene two(two_oscillators(6));
+  const Model two(two_oscillators(6));
   State state = two.initial();
   state.q += Vec{{1, 1e-15}};
   Scales scales;
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(free_flight_is_no_scale_of_what_swings) {
   scene.nodes = {
       {.pinned = true}, {.position = {2, 0, 0}, .mass = 1}, {.velocity = {1e6, 0, 0}, .mass = 1}};
   scene.springs = {{{0, 1}, {.stiffness = 1, .rest_length = 1}}};
-  const ReducedScene thrown(scene);
+  const Model thrown(scene);
   State later = thrown.initial();
   later.t = 1;
   later.q[0] -= 0.5;
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(free_flight_is_no_scale_of_what_swings) {
   BOOST_TEST(scales.displacement == 0.5);
   // But where nothing else moves.
   scene.springs.clear();
-  const ReducedScene alone(scene);
+  const Model alone(scene);
   State flown = alone.initial();
   flown.t = 1;
   Scales of_flight;
@@ -196,7 +196,7 @@ BOOST_AUTO_TEST_CASE(free_flight_is_no_scale_of_what_swings) {
 BOOST_AUTO_TEST_CASE(where_all_is_pinned_there_is_no_error) {
   Scene pinned = three_nodes();
   for (Node& node : pinned.nodes) node.pinned = true;
-  const ReducedScene scene(pinned);
+  const Model scene(pinned);
   Scales scales;
   extend(scales, scene, scene.initial());
   BOOST_TEST(scales.displacement == 0);

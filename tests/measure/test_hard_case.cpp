@@ -35,7 +35,7 @@ HardCase three_bodies(PairLaw::Form form) {
 
 BOOST_AUTO_TEST_CASE(own_forces_are_derivatives_of_their_energy) {
   for (const PairLaw::Form form : forms) {
-    const ReducedScene model = three_bodies(form).model();
+    const Model model = three_bodies(form).model();
     const System& system = model.system();
     const Vec q = model.initial().q;
     // Central differences of step d: errors of d^2 times third derivatives of some 1e3, and of the
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(the_truth_of_own_forces_has_the_same_forces) {
     HardCase c = three_bodies(form);
     for (const bool gives_stiffness : {true, false}) {
       c.gives_stiffness = gives_stiffness;
-      const ReducedScene model = c.model();
+      const Model model = c.model();
       const PlainPairs<long double> plain(c.scene, c.pairs);
       std::vector<long double> a;
       plain.acceleration(plain.positions(), a);

@@ -15,7 +15,7 @@ constexpr double reference_seconds = 100;  // more than any takes, also on a slo
 
 // A scene with its reference.
 struct Course {
-  ReducedScene scene;
+  Model scene;
   double until;
   Reference reference;
 

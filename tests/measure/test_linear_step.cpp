@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(measured_limits_are_the_declared_ones) {
 BOOST_AUTO_TEST_CASE(a_diagnosis_finds_the_limit_that_an_explicit_method_does_not_declare) {
   Method method = method_named("verlet");
   method.stability_limit.reset();
-  const ReducedScene scene(load_scene("oscillator"));  // w = 10 rad/s
+  const Model scene(load_scene("oscillator"));  // w = 10 rad/s
   const Options options{.step_size = 0.25};
   State state = scene.initial();
   const Summary summary = make_integrator(method, scene.system(), options)->advance(state, 100);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double until = 0.5;
 
-const ReducedScene& orbit() {
-  static const ReducedScene scene(load_scene("orbit"));
+const Model& orbit() {
+  static const Model scene(load_scene("orbit"));
   return scene;
 }
 

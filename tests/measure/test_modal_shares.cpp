@@ -23,7 +23,7 @@ struct Row {
   double omega(int mode) const {
     return 2 * std::sqrt(stiffness / mass) * std::sin(mode * M_PI / (2 * (count + 1)));
   }
-  ReducedScene scene() const {
+  Model scene() const {
     Scene scene{.name = "row", .dimension = 1};
     for (int i = 0; i <= count + 1; ++i) {
       double v = 0;
@@ -38,11 +38,11 @@ struct Row {
     for (std::size_t i = 0; i + 1 < scene.nodes.size(); ++i) {
       scene.springs.push_back({{i, i + 1}, {.stiffness = stiffness}});
     }
-    return ReducedScene(scene, Reductions::only({Reduction::pins, Reduction::constant_stiffness}));
+    return Model(scene, Reductions::only({Reduction::pins, Reduction::constant_stiffness}));
   }
 };
 
-std::vector<State> exact_path(const ReducedScene& scene, double until, int looks) {
+std::vector<State> exact_path(const Model& scene, double until, int looks) {
   const LinearMotion motion(scene.system());
   std::vector<State> path;
   for (int i = 1; i <= looks; ++i) {
@@ -51,7 +51,7 @@ std::vector<State> exact_path(const ReducedScene& scene, double until, int looks
   return path;
 }
 
-ModalShares shares_of(const ReducedScene& scene) {
+ModalShares shares_of(const Model& scene) {
   auto shares = ModalShares::at_equilibrium(scene);
   BOOST_TEST_REQUIRE(shares.has_value());
   return *shares;
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(they_add_up_to_the_kinetic_energy) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (const int count : {5, 60}) {  // fewer and more than are kept apart
-    const ReducedScene scene = Row{count, {}}.scene();
+    const Model scene = Row{count, {}}.scene();
     const ModalShares shares = shares_of(scene);
     Vec v(count);
     for (double& x : v) x = normal(random);
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(of_a_linear_chain_they_are_those_of_the_start) {
   // The mean kinetic energy of a mode over whole periods is half of its energy, which is all
   // kinetic at the start. Some hundred periods give errors of 1/(2 w T) and of chance in the looks.
   const Row row{60, {{1, 0.3}, {4, 0.2}, {40, 0.1}}};
-  const ReducedScene scene = row.scene();
+  const Model scene = row.scene();
   const ModalShares shares = shares_of(scene);
   const Vec start = shares.kinetic(scene.initial().v);
   const Vec mean = shares.mean(exact_path(scene, 97.3, 20000));
@@ -106,9 +106,8 @@ BOOST_AUTO_TEST_CASE(without_an_equilibrium_there_are_none) {
   Scene falling{.name = "falling", .dimension = 2, .gravity = {0, -9.81, 0}};
   falling.nodes = {{.mass = 1}, {.position = {1, 0, 0}, .mass = 1}};
   falling.springs = {{{0, 1}, {.stiffness = 10, .rest_length = 1}}};
-  BOOST_TEST(
-      !ModalShares::at_equilibrium(ReducedScene(falling, Reductions::only({Reduction::pins}))));
-  BOOST_TEST(ModalShares::at_equilibrium(ReducedScene(load_scene("pendulum"))).has_value());
+  BOOST_TEST(!ModalShares::at_equilibrium(Model(falling, Reductions::only({Reduction::pins}))));
+  BOOST_TEST(ModalShares::at_equilibrium(Model(load_scene("pendulum"))).has_value());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

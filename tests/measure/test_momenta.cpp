@@ -14,7 +14,7 @@ constexpr double speed = 1;
 
 // The change of the scene's conserved momenta in an accurate run to `until`.
 double change_of_run(const Scene& scene, double until) {
-  const ReducedScene reduced(scene, Reductions::only({Reduction::pins}));
+  const Model reduced(scene, Reductions::only({Reduction::pins}));
   const State state = state_after(reduced, method_named("kahan_li8"), 1e-3, until);
   const Momenta momenta(scene);
   BOOST_TEST_REQUIRE(momenta.any_kept());

@@ -22,7 +22,7 @@ Scene two_vibrations(double slow, double fast, double share) {
 }
 
 OwnFrequencies of(const Scene& scene, double until, double w_max) {
-  const ReducedScene model(scene);
+  const Model model(scene);
   std::vector<State> path;
   Simulation run(scene, method("exact"), {.step_size = until});
   Observer observer{{}, [&](const State& state) { path.push_back(state); }};

@@ -40,8 +40,7 @@ Scene compressed_strut() {
 
 BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
   for (const double until : {0.01, 2.0, 10.0}) {
-    const ReducedScene scene(
-        drawn("oscillator", {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}));
+    const Model scene(drawn("oscillator", {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}));
     const Reference made = make_reference(scene, until, seconds);
     const long double w = 2.5, t = until;
     const double x = static_cast<double>(std::cos(w * t) - 3 / w * std::sin(w * t));
@@ -56,7 +55,7 @@ BOOST_AUTO_TEST_CASE(the_oscillator_ends_where_its_closed_form_does) {
 }
 
 BOOST_AUTO_TEST_CASE(the_oscillator_is_known_along_its_way) {
-  const ReducedScene scene(drawn("oscillator", {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}));
+  const Model scene(drawn("oscillator", {{"mass", 4}, {"stiffness", 25}, {"velocity", -3}}));
   const Reference made = make_reference(scene, 10, seconds);
   const std::vector<double> times{0, 0.3, 1, 7.77, 10};
   const ReferencePath path = path_of(scene, made, times, seconds);
@@ -83,7 +82,7 @@ BOOST_AUTO_TEST_CASE(a_step_too_long_for_numbers_is_shortened) {
   Scene scene{.name = "quartic", .dimension = 1};
   scene.nodes = {{.position = {0, 0, 0}, .pinned = true}, {.position = {1.8, 0, 0}, .mass = 1}};
   scene.springs = {{{0, 1}, {.stiffness = 100, .rest_length = 1, .quartic = 100}}};
-  const ReducedScene model(scene);
+  const Model model(scene);
   const double until = 5000;  // s
   Scales scales;
   extend(scales, model, model.initial());
@@ -96,7 +95,7 @@ BOOST_AUTO_TEST_CASE(a_step_too_long_for_numbers_is_shortened) {
 
 BOOST_AUTO_TEST_CASE(scales_are_the_extremes_of_the_whole_motion) {
   // x = cos 10 t: from 1 to -1 and back, with the speed 10 between.
-  const ReducedScene scene(load_scene("oscillator"));
+  const Model scene(load_scene("oscillator"));
   const Scales scales = make_reference(scene, 2, seconds).scales;
   constexpr double sampling = 1e-2;  // extremes are seen at steps
   BOOST_TEST(scales.displacement == 2, boost::test_tools::tolerance(sampling));
@@ -111,7 +110,7 @@ BOOST_AUTO_TEST_CASE(scales_are_the_extremes_of_the_whole_motion) {
 
 BOOST_AUTO_TEST_CASE(both_ways_are_named) {
   const auto made_by = [](const char* name) {
-    return make_reference(ReducedScene(load_scene(name)), 0.1, seconds).made_by;
+    return make_reference(Model(load_scene(name)), 0.1, seconds).made_by;
   };
   BOOST_TEST(contains(made_by("oscillator"), {"modal", "kahan_li8 at h = "}));
   BOOST_TEST(contains(made_by("pair"), {"kahan_li8 at h = ", "Fehlberg"}));
@@ -121,7 +120,7 @@ BOOST_AUTO_TEST_CASE(free_flight_without_springs_is_a_parabola) {
   Scene scene{.name = "thrown", .dimension = 2, .gravity = {0, -8, 0}};
   scene.nodes = {{.velocity = {3, 4, 0}, .mass = 2}};
   for (const Reductions& reductions : {Reductions(), Reductions::only({Reduction::pins})}) {
-    const ReducedScene thrown(scene, reductions);
+    const Model thrown(scene, reductions);
     const Reference made = make_reference(thrown, 0.5, seconds);
     const Node end = thrown.expand(made.end).front();
     BOOST_TEST(made.end.t == 0.5);
@@ -134,7 +133,7 @@ BOOST_AUTO_TEST_CASE(free_flight_without_springs_is_a_parabola) {
 
 BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) {
   for (const char* name : {"oscillator", "pair", "orbit", "pendulum"}) {
-    const ReducedScene scene(load_scene(name));
+    const Model scene(load_scene(name));
     const Reference made = make_reference(scene, 2, seconds);
     BOOST_TEST(made.certified.position < tight, name);
     BOOST_TEST(made.certified.energy < tight, name);
@@ -154,7 +153,7 @@ BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) 
 BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
   // Four masses in a row on soft springs, let go from the horizontal: one rounding is all of the
   // motion after some nine seconds.
-  const ReducedScene scene(drawn("chain", {{"nodes", 4}, {"stiffness", 1000}}));
+  const Model scene(drawn("chain", {{"nodes", 4}, {"stiffness", 1000}}));
   const Reference early = make_reference(scene, 6, seconds),
                   late = make_reference(scene, 12, seconds);
   BOOST_TEST(!early.is_beyond_horizon());
@@ -182,7 +181,7 @@ BOOST_AUTO_TEST_CASE(a_chaotic_motion_has_one_before_and_after_it_is_reached) {
 
 BOOST_AUTO_TEST_CASE(refinement_goes_on_while_steps_are_too_coarse_for_its_order) {
   // A rosette that comes near the spring's other end: the first changes do not shrink at all.
-  const ReducedScene scene(drawn("orbit", {{"rest_length", 0.3}, {"speed", 1}}));
+  const Model scene(drawn("orbit", {{"rest_length", 0.3}, {"speed", 1}}));
   const Reference made = make_reference(scene, 20, seconds);
   BOOST_TEST(made.certified.position < 1e-7);
   BOOST_TEST(made.certified.velocity < 1e-7);
@@ -192,7 +191,7 @@ BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) 
   // Masses m on springs that push with F over the length l move sideways exponentially, the fastest
   // at (2 sin(5 pi/12)) sqrt(F/(l m)) = 66/s. One rounding becomes a hundredth after half a second.
   const Scene strut = compressed_strut();
-  const ReducedScene scene(strut);
+  const Model scene(strut);
   const Reference early = make_reference(scene, 0.2, seconds, &strut),
                   late = make_reference(scene, 0.7, seconds, &strut);
   for (const Reference& made : {early, late}) {
@@ -208,7 +207,7 @@ BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) 
   // The motion along the line changes F by some.
   BOOST_TEST(late.out_of_symmetry->lyapunov == 66, boost::test_tools::tolerance(0.25));
   // Without any reduction it is chaotic, and of the same horizon.
-  const ReducedScene whole(strut, Reductions::only({Reduction::pins}));
+  const Model whole(strut, Reductions::only({Reduction::pins}));
   const Reference plain = make_reference(whole, 0.7, seconds);
   BOOST_TEST(plain.is_beyond_horizon());
   BOOST_TEST(plain.horizon == late.out_of_symmetry->horizon, boost::test_tools::tolerance(0.2));
@@ -217,7 +216,7 @@ BOOST_AUTO_TEST_CASE(a_motion_in_exact_symmetry_is_known_and_known_to_be_alone) 
 BOOST_AUTO_TEST_CASE(a_push_out_of_a_stable_symmetry_does_nothing) {
   Scene stretched = compressed_strut();
   for (Spring& spring : stretched.springs) spring.law.rest_length = 0.8;
-  const Reference made = make_reference(ReducedScene(stretched), 0.7, seconds, &stretched);
+  const Reference made = make_reference(Model(stretched), 0.7, seconds, &stretched);
   BOOST_TEST_REQUIRE(made.out_of_symmetry.has_value());
   BOOST_TEST(std::isinf(made.out_of_symmetry->horizon));
   // It is a rounding of the start, whose effect is seen in one run as well; two runs of thousands
@@ -231,16 +230,16 @@ BOOST_AUTO_TEST_CASE(without_symmetry_there_is_nothing_to_be_pushed_out_of) {
   Scene bent = compressed_strut();
   bent.nodes[3].position.y() = 0.1;
   bent.nodes[2].position.y() = 0.2;
-  const Reference made = make_reference(ReducedScene(bent), 0.1, seconds, &bent);
+  const Reference made = make_reference(Model(bent), 0.1, seconds, &bent);
   BOOST_TEST(!made.is_reduced_by_symmetry);
   BOOST_TEST(!made.out_of_symmetry.has_value());
   // Nor is anything known of it where the drawn scene is not.
-  const Reference unasked = make_reference(ReducedScene(compressed_strut()), 0.1, seconds);
+  const Reference unasked = make_reference(Model(compressed_strut()), 0.1, seconds);
   BOOST_TEST((unasked.is_reduced_by_symmetry && !unasked.out_of_symmetry));
 }
 
 BOOST_AUTO_TEST_CASE(a_certificate_sees_changes_and_roundings_and_not_the_difference_alone) {
-  const ReducedScene scene(load_scene("oscillator"));
+  const Model scene(load_scene("oscillator"));
   const Scales scales{.displacement = 2, .speed = 10, .kinetic = 50};
   Solution one{.end = {0.1, Vec::Constant(1, 0.5), Vec::Constant(1, 1)}, .scales = scales},
       other = one;
@@ -257,7 +256,7 @@ BOOST_AUTO_TEST_CASE(a_certificate_sees_changes_and_roundings_and_not_the_differ
 
 BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {
   for (const char* name : {"oscillator", "orbit", "pendulum"}) {
-    const ReducedScene scene(load_scene(name));
+    const Model scene(load_scene(name));
     const Reference best = make_reference(scene, 0.5, seconds);
     for (const double needed : {1e-5, 1e-8}) {
       const Reference agreed = agreed_reference(scene, 0.5, needed, 10);
@@ -275,7 +274,7 @@ BOOST_AUTO_TEST_CASE(what_two_unlike_methods_agree_on_is_as_good_as_needed) {
 }
 
 BOOST_AUTO_TEST_CASE(where_time_is_up_the_nearest_two_say_how_far_they_differ) {
-  const ReducedScene scene(load_scene("pendulum"));
+  const Model scene(load_scene("pendulum"));
   BOOST_CHECK_THROW(agreed_reference(scene, 0.5, 1e-8, 0), NoReference);
   const Reference best = make_reference(scene, 0.5, seconds);
   const Reference agreed = agreed_reference(scene, 0.5, 0, 0.2);
@@ -286,7 +285,7 @@ BOOST_AUTO_TEST_CASE(where_time_is_up_the_nearest_two_say_how_far_they_differ) {
 
 BOOST_AUTO_TEST_CASE(an_end_too_late_is_refused_with_what_it_would_take) {
   // w = 10 rad/s needs at least 5e10 steps; a core takes some millions a second.
-  const ReducedScene scene(load_scene("pendulum"));
+  const Model scene(load_scene("pendulum"));
   for (const double until : {1e9, 1e300}) {
     const ProcessorClock clock;
     const auto start = clock_now();
@@ -301,9 +300,9 @@ BOOST_AUTO_TEST_CASE(a_vibration_too_fast_for_numbers_has_no_reference) {
   // w = sqrt(k / m) of the least positive mass overflows where it is bounded by k / m.
   Scene light = drawn("pendulum");
   light.nodes.back().mass = 5e-324;
-  BOOST_CHECK_EXCEPTION(
-      make_reference(ReducedScene(light), 1e-3, 5), NoReference,
-      [](const auto& error) { return contains(error.what(), {"too fast for numbers"}); });
+  BOOST_CHECK_EXCEPTION(make_reference(Model(light), 1e-3, 5), NoReference, [](const auto& error) {
+    return contains(error.what(), {"too fast for numbers"});
+  });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -69,7 +69,7 @@ void bounds_hold(const Search& search, const Reference& reference) {
 
 BOOST_AUTO_TEST_CASE(every_bound_holds) {
   for (const auto& [scene, until, accuracy] : motions()) {
-    const ReducedScene model(scene);
+    const Model model(scene);
     const Reference reference = make_reference(model, until, 10);
     Search search(model, until, AccuracyOf::positions, seconds, &scene);
     const Trial* found = search.find(accuracy);
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(pairs_that_pass_a_turning_force_are_known_no_better_than_th
     scene.nodes.push_back({.position = {2.4, 1.2, -0.9}, .mass = 1});
     scene.springs.push_back({{2, 3}, {.stiffness = std::pow(10, between(4, 7)), .rest_length = 1}});
     const double until = between(1, 4), accuracy = std::pow(10, between(-4, -2));
-    const ReducedScene model(scene);
+    const Model model(scene);
     Search search(model, until, AccuracyOf::positions, seconds, &scene, rules);
     const Trial* found = search.find(accuracy);
     if (!found || !search.is_judged_by_forecast()) continue;
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(where_stiff_springs_hold_an_answer_back_implicit_methods_ta
   rules.unnoticed = 0.5;  // a race that no load ends
   for (const std::uint64_t number : {14000011, 14000092, 14000168}) {
     const judged_advice::Case drawn = judged_advice::drawn_case(number);
-    const ReducedScene model(drawn.scene);
+    const Model model(drawn.scene);
     Search search(model, drawn.until, AccuracyOf::positions, seconds, &drawn.scene, rules);
     const Trial* found = search.find(drawn.accuracy);
     BOOST_TEST_CONTEXT(drawn.scene.name) {
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(an_unstable_equilibrium_is_known_until_one_rounding_leaves_
   Scene scene{.name = "stands", .dimension = 2, .gravity = {0, -8, 0}};
   scene.nodes = {{.pinned = true}, {.position = {0, 0.9375, 0}, .mass = 1}};
   scene.springs = {{{0, 1}, {.stiffness = 128, .rest_length = 1}}};
-  const ReducedScene model(scene);
+  const Model model(scene);
   const double rate = std::sqrt(8 / 0.9375), accuracy = 1e-3;
   for (const auto& [until, is_known] :
        {std::pair(5.0, true), {8.5, true}, {10.0, false}, {13.0, false}}) {
@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(an_unstable_equilibrium_is_known_until_one_rounding_leaves_
   // A column that stands above its critical load, until one rounding is 0.02 of its size. A million
   // roundings have thrown it over long before, and their effect is no million times as large.
   const judged_advice::HardCase column = judged_advice::hard_case(34001181);
-  const ReducedScene standing = column.model();
+  const Model standing = column.model();
   Search search(standing, column.until, column.of, seconds, &column.scene);
   BOOST_TEST((search.find(column.accuracy) == nullptr));
   BOOST_TEST(search.check().is_hopeless(column.accuracy));
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(an_unstable_equilibrium_is_known_until_one_rounding_leaves_
 // for a machine of another speed.
 BOOST_AUTO_TEST_CASE(the_judge_is_the_same_on_machines_of_any_speed) {
   for (const auto& [scene, until, accuracy] : motions()) {
-    const ReducedScene model(scene);
+    const Model model(scene);
     Search fast(model, until, AccuracyOf::positions, seconds, &scene);
     fast.find(accuracy);
     const CountedClock clock;
@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(the_judge_is_the_same_on_machines_of_any_speed) {
 
 BOOST_AUTO_TEST_CASE(a_pushed_run_checks_and_is_no_answer) {
   const Scene scene = drawn("cloth", {{"nodes", 20}});
-  const ReducedScene model(scene);
+  const Model model(scene);
   Search search(model, 0.6, AccuracyOf::positions, seconds);
   const Trial* found = search.find(1e-5);
   BOOST_TEST_REQUIRE((found && search.is_judged_by_forecast()));
@@ -213,7 +213,7 @@ BOOST_AUTO_TEST_CASE(a_pushed_run_checks_and_is_no_answer) {
 // The way of a run that was not seen there cannot be compared.
 BOOST_AUTO_TEST_CASE(a_run_that_was_seen_at_its_end_alone_is_none_of_a_pair) {
   const Scene scene = drawn("oscillator");
-  const ReducedScene model(scene);
+  const Model model(scene);
   Runs runs(model, 1, AccuracyOf::positions, seconds, nullptr, Rules{});
   const Method& verlet = *find_method("verlet");
   runs.make(verlet, 1e-3, {.only_end = true});
@@ -235,7 +235,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_seen_at_its_end_alone_is_none_of_a_pair) {
 // The second of a pair begins one rounding away, so that both are apart by at least its effect.
 BOOST_AUTO_TEST_CASE(a_pair_of_runs_shows_what_rounding_does) {
   const Scene scene = drawn("cloth", {{"nodes", 20}});
-  const ReducedScene model(scene);
+  const Model model(scene);
   Runs runs(model, 0.1, AccuracyOf::positions, seconds, nullptr, Rules{});
   const Trial& first = runs.make(*find_method("verlet"), 1e-4);
   runs.measure_by(first);
@@ -255,7 +255,7 @@ BOOST_AUTO_TEST_CASE(a_pair_of_runs_shows_what_rounding_does) {
 
 BOOST_AUTO_TEST_CASE(a_judge_that_another_contradicts_is_none) {
   const Scene scene = drawn("orbit");
-  const ReducedScene model(scene);
+  const Model model(scene);
   Runs runs(model, 2, AccuracyOf::positions, seconds, nullptr, Rules{});
   const Method& verlet = *find_method("verlet");
   const Trial &coarse = runs.make(verlet, 1e-2), &fine = runs.make(verlet, 5e-3);
@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(a_judge_that_another_contradicts_is_none) {
 BOOST_AUTO_TEST_CASE(forces_are_counted_as_if_all_parts_were_one) {
   Scene scene = drawn("pendulum");
   const auto forces = [&] {
-    const ReducedScene model(scene);
+    const Model model(scene);
     Runs runs(model, 1, AccuracyOf::positions, seconds, nullptr, Rules{});
     return runs.forces(runs.make(*find_method("verlet"), 1e-3));
   };
@@ -294,7 +294,7 @@ BOOST_AUTO_TEST_CASE(forces_are_counted_as_if_all_parts_were_one) {
     for (auto& node : spring.nodes) node += nodes;
     scene.springs.push_back(spring);
   }
-  BOOST_TEST_REQUIRE(ReducedScene(scene).unknowns_by_part().size() == 2u);
+  BOOST_TEST_REQUIRE(Model(scene).unknowns_by_part().size() == 2u);
   BOOST_TEST(forces() == of_one);
 }
 
@@ -308,7 +308,7 @@ BOOST_AUTO_TEST_CASE(a_motion_that_lives_in_exact_symmetry_alone_is_told_from_it
                  {.position = 0.1 * along, .mass = 1}};
   scene.springs = {{{0, 2}, {.stiffness = 100, .rest_length = 1.2}},
                    {{1, 2}, {.stiffness = 100, .rest_length = 1.2}}};
-  const ReducedScene model(scene);
+  const Model model(scene);
   BOOST_TEST_REQUIRE(model.system().size() == 1);
   Search whole(model, 10, AccuracyOf::positions, seconds, &scene);
   BOOST_TEST((whole.find(1e-6) == nullptr));
@@ -332,7 +332,7 @@ BOOST_AUTO_TEST_CASE(a_motion_of_few_roundings_is_known_to_few_digits) {
                  {.position = {0.4, 0.8, 0}, .velocity = {1e-8, 5e-9, 0}, .mass = 1}};
   scene.springs = {{{0, 2}, {.stiffness = 100, .rest_length = std::sqrt(0.8)}},
                    {{1, 2}, {.stiffness = 100, .rest_length = 1}}};
-  const ReducedScene model(scene);
+  const Model model(scene);
   Search search(model, 2, AccuracyOf::positions, seconds, &scene);
   BOOST_TEST((search.find(1e-9) == nullptr));
   const Failure failure = why_not(search, 1e-9, "");
@@ -346,12 +346,11 @@ BOOST_AUTO_TEST_CASE(what_stands_in_balance_is_known_until_rounding_has_grown) {
   Scene scene{.name = "standing", .dimension = 2, .gravity = {0, -9.81, 0}};
   scene.nodes = {{.pinned = true}, {.position = {0, 1, 0}, .mass = 0.2}};
   scene.springs = {{{0, 1}, {.stiffness = 4000, .rest_length = 1 + 0.2 * 9.81 / 4000}}};
-  const ReducedScene on_a_line(scene),
-      in_the_plane(scene, Reductions().without(Reduction::dimension));
+  const Model on_a_line(scene), in_the_plane(scene, Reductions().without(Reduction::dimension));
   // A rounding of the height to the side, and one of the rest length beside w^2 = k/m: the bound is
   // no less than half of the first, and no more than some hundred of both.
   const double grown = 1.1e-16 * std::cosh(std::sqrt(9.81) * 3);
-  for (const ReducedScene* model : {&on_a_line, &in_the_plane}) {
+  for (const Model* model : {&on_a_line, &in_the_plane}) {
     const auto bound = [&](double until) {
       Search search(*model, until, AccuracyOf::positions, seconds, &scene);
       const Trial* found = search.find(1e-6);
@@ -374,7 +373,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_are_as_accurate_as_their_coordinates) {
   scene.nodes = {{.position = {pin, 0, 0}, .pinned = true},
                  {.position = {start, 0, 0}, .velocity = {v, 0, 0}, .mass = m}};
   scene.springs = {{{0, 1}, {.stiffness = k, .rest_length = rest}}};
-  const ReducedScene model(scene);
+  const Model model(scene);
   Search search(model, until, AccuracyOf::positions, seconds, &scene);
   const Trial* found = search.find(1e-6);
   BOOST_TEST_REQUIRE((found && found->method->order == 0));
@@ -393,7 +392,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_are_as_accurate_as_their_coordinates) {
 // Errors of a formula that has become unstable say nothing of its order.
 BOOST_AUTO_TEST_CASE(a_run_whose_energy_grows_is_not_sound) {
   const Scene scene = drawn("oscillator");
-  const ReducedScene model(scene);
+  const Model model(scene);
   Runs runs(model, 5, AccuracyOf::positions, seconds, nullptr, Rules{});
   const Method& verlet = *find_method("verlet");
   const double limit = linear_limit(verlet) / runs.bound_of_w();
@@ -417,7 +416,7 @@ BOOST_AUTO_TEST_CASE(energies_of_massless_nodes_begin_in_balance) {
                    {{1, 2}, {.stiffness = 300, .rest_length = 1.0}},
                    {{2, 3}, {.stiffness = 500, .rest_length = 0.9}}};
   scene.gravity[1] = -9.81;
-  const ReducedScene model(scene, Reductions().without(Reduction::massless));
+  const Model model(scene, Reductions().without(Reduction::massless));
   const double until = 2, accuracy = 1e-5;
   Search search(model, until, AccuracyOf::energy, seconds, &scene);
   const Trial* found = search.find(accuracy);
@@ -438,7 +437,7 @@ BOOST_AUTO_TEST_CASE(energies_of_massless_nodes_begin_in_balance) {
 // All steps of a coarse run are looked into, and short runs as often as long ones.
 BOOST_AUTO_TEST_CASE(a_path_is_seen_within_its_steps) {
   const Scene scene = drawn("orbit", {{"radius", 2.5}, {"speed", 0.1}});
-  const ReducedScene model(scene);
+  const Model model(scene);
   const Method& coarse = *find_method("dprkn8");
   Runs runs(model, 3, AccuracyOf::path, seconds, nullptr, Rules{});
   const std::size_t before = runs.stage().times().size();

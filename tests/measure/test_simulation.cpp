@@ -38,7 +38,7 @@ BOOST_AUTO_TEST_CASE(it_is_the_run_of_the_smallest_model_with_the_scales_of_the_
         const Options options{.step_size = 1e-3, .rtol = 1e-6};
         Simulation run(scene, *m, options);
         BOOST_TEST(qddot::name(run.advance(0.02).outcome) == "reached_end");
-        const ReducedScene model = reduced_for(*m, scene);
+        const Model model = reduced_for(*m, scene);
         State state = model.initial();
         make_integrator(*m, model.system(), with_tolerance_scales(options, model))
             ->advance(state, 0.02);
@@ -73,13 +73,13 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_is_refused_in_a_sentence) {
                     std::invalid_argument);
   BOOST_CHECK_THROW(Simulation(chain.system, chain.start, 7, method("verlet"), {.step_size = 1e-3}),
                     std::invalid_argument);
-  const ReducedScene model(chain.system, chain.start, 2);
+  const Model model(chain.system, chain.start, 2);
   BOOST_CHECK_THROW(work_precision(model, 1, {&method("exact")}), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_CASE(an_own_system_is_charted_against_a_certified_reference) {
   const auto chain = own_chain();
-  const ReducedScene model(chain.system, chain.start, 2);
+  const Model model(chain.system, chain.start, 2);
   const double until = 0.5;
   const auto chart = work_precision(model, until, {&method("verlet"), &method("arkode_dirk4")},
                                     {.seconds = 0.5, .repeats = 1}, 2);

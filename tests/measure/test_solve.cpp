@@ -25,7 +25,7 @@ constexpr double reference_seconds = 100;
 // A chain that is chaotic after some swings.
 Scene swinging_chain() { return drawn("chain", {{"nodes", 4}, {"stiffness", 1000}}); }
 
-double error_of(const Answer& answer, const ReducedScene& model, const Reference& reference) {
+double error_of(const Answer& answer, const Model& model, const Reference& reference) {
   return errors_between(model, answer.end, reference.end, reference.energy, reference.scales)
       .position;
 }
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(a_motion_that_begins_where_nothing_vibrates_is_found) {
   for (const double q : {1e-6, 0.1, 0.5774, 0.58, -0.9}) {
     for (const double until : {1.0, 5.0, 40.0}) {
       BOOST_TEST_CONTEXT("q = " << q << " until " << until) {
-        const ReducedScene model(hollows, State{0, Vec::Constant(1, q), Vec::Zero(1)}, 1);
+        const Model model(hollows, State{0, Vec::Constant(1, q), Vec::Zero(1)}, 1);
         const Answer answer = measure::solve(model, until, {.accuracy = 1e-4});
         BOOST_TEST(answer.is_reached, answer.why);
         const Reference reference = make_reference(model, until, reference_seconds);
@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(what_it_claims_holds_on_drawn_scenes) {
   int claimed = 0, beyond_bar = 0, beyond_accuracy = 0;
   for (std::uint64_t seed = 5000000; claimed < 24; ++seed) {
     const judged_advice::Case c = judged_advice::drawn_case(seed);
-    const ReducedScene model(c.scene);
+    const Model model(c.scene);
     const auto reference = judge(c, model, 200, 1);
     if (!reference) continue;
     const Answer answer = measure::solve(model, c.until, {.accuracy = c.accuracy});
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_vibration_that_long_steps_leave_standing_is_not_missed) {
                  {.position = {3, 0, 0}, .velocity = {3, 0, 0}, .mass = 1}};
   scene.springs = {{{0, 1}, {.stiffness = 1e10, .rest_length = 1}},
                    {{1, 2}, {.stiffness = 1, .rest_length = 1, .quartic = 0.1}}};
-  const ReducedScene model(scene);
+  const Model model(scene);
   BOOST_TEST_REQUIRE(!model.system().stiffness_is_constant());
   for (const double until : {0.3, 0.7}) {
     const Reference reference = make_reference(model, until, 3);
@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(linear_motion_is_exact_at_once) {
 }
 
 BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
-  const ReducedScene model(swinging_chain());
+  const Model model(swinging_chain());
   const Answer late = measure::solve(model, 12, {.accuracy = 1e-3});
   BOOST_TEST(!late.is_reached);
   BOOST_TEST(contains(late.why, {"chaotic", "energy"}));
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(beyond_the_horizon_nothing_is_claimed) {
 // Pairs of runs fail here, and runs with error control take too much work.
 BOOST_AUTO_TEST_CASE(a_large_motion_is_told_to_be_chaotic) {
   const Scene scene = drawn("cloth");
-  const ReducedScene model(scene);
+  const Model model(scene);
   for (const double accuracy : {1e-2, 1e-5}) {
     const Answer answer = measure::solve(model, 2, {.accuracy = accuracy}, &scene);
     BOOST_TEST(!answer.is_reached);
@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(a_small_drift_is_known_to_the_rounding_of_its_coordinates) 
   scene.nodes = {{.position = {1, 0, 0}, .velocity = {1e-9, 0, 0}, .mass = 1},
                  {.position = {2, 0, 0}, .velocity = {1e-9, 0, 0}, .mass = 1}};
   scene.springs = {{{0, 1}, {.stiffness = 10, .rest_length = 1}}};
-  BOOST_TEST_REQUIRE(ReducedScene(scene).system().size() == 0);
+  BOOST_TEST_REQUIRE(Model(scene).system().size() == 0);
   const Answer answer = measure::solve(scene, 1, 1e-3);
   BOOST_TEST(answer.is_reached);
   BOOST_TEST(answer.error_estimate > 2e-7);
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(a_small_drift_is_known_to_the_rounding_of_its_coordinates) 
 }
 
 BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
-  const ReducedScene model(drawn("cloth", {{"nodes", 10}}));
+  const Model model(drawn("cloth", {{"nodes", 10}}));
   const double until = 0.3, accuracy = 1e-4;
   for (const AccuracyOf of : {AccuracyOf::path, AccuracyOf::energy}) {
     const Answer answer = measure::solve(model, until, {.accuracy = accuracy, .of = of});
@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(nodes_without_mass_are_taken_by_tolerance) {
   // A massless joint of three springs, which no reduction takes out.
   scene.nodes[2].mass = 0;
   scene.springs.push_back({{0, 2}, {.stiffness = 300, .rest_length = 0.1}});
-  const ReducedScene model(scene);
+  const Model model(scene);
   BOOST_TEST_REQUIRE(model.system().has_massless());
   const Answer answer = measure::solve(model, 0.05, {.accuracy = 1e-4});
   BOOST_TEST_REQUIRE(answer.is_reached, answer.why);
@@ -269,7 +269,7 @@ BOOST_AUTO_TEST_CASE(what_makes_no_sense_is_refused) {
 }
 
 BOOST_AUTO_TEST_CASE(it_stops_when_its_time_is_up) {
-  const Answer answer = measure::solve(ReducedScene(drawn("cloth", {{"nodes", 20}})), 1.0,
+  const Answer answer = measure::solve(Model(drawn("cloth", {{"nodes", 20}})), 1.0,
                                        {.accuracy = 1e-9, .seconds = 1e-9});
   BOOST_TEST(!answer.is_reached);
   BOOST_TEST(!answer.why.empty());
@@ -280,7 +280,7 @@ BOOST_AUTO_TEST_CASE(advice_holds_when_it_is_followed) {
        {std::pair(drawn("cloth", {{"nodes", 12}}), 0.1), std::pair(drawn("orbit"), 20.0),
         std::pair(drawn("lattice"), 0.02), std::pair(drawn("pendulum"), 5.0),
         std::pair(drawn("framed_cloth", {{"nodes", 8}}), 0.05)}) {
-    const ReducedScene model(scene);
+    const Model model(scene);
     const Reference reference = make_reference(model, until, 3);
     const Advices advices = advise(scene, until, {1e-6, 1e-2, 1e-4});
     BOOST_TEST_REQUIRE(advices.for_each.size() == 3u);

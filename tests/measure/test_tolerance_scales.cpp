@@ -13,7 +13,7 @@ namespace {
 const auto within_rounding = boost::test_tools::tolerance(1e-12);
 
 Options scales_of(const Scene& scene, const Reductions& reductions = {}) {
-  return with_tolerance_scales({}, ReducedScene(scene, reductions));
+  return with_tolerance_scales({}, Model(scene, reductions));
 }
 
 // Whether the scene's length [m] and speed [m/s] are these to the bit.
@@ -140,7 +140,7 @@ BOOST_AUTO_TEST_CASE(without_any_extent_a_length_is_a_metre) {
 
 BOOST_AUTO_TEST_CASE(nothing_else_of_the_options_changes) {
   const Options before{.rtol = 1e-5, .atol = 1e-9, .max_order = 3, .stability_detection = true};
-  const Options after = with_tolerance_scales(before, ReducedScene(falling_triangle()));
+  const Options after = with_tolerance_scales(before, Model(falling_triangle()));
   BOOST_TEST(after.rtol == before.rtol);
   BOOST_TEST(after.atol == before.atol);
   BOOST_TEST(after.step_size == before.step_size);

@@ -16,7 +16,7 @@ constexpr double omega = 10;  // of the oscillator, 1 kg at 1 m: E = kinetic sca
 struct Watched {
   Scene drawn;
   double until;
-  ReducedScene scene{drawn};
+  Model scene{drawn};
   Reference reference = make_reference(scene, until, 100);
   Watch watch{drawn, scene, until, reference};
 

@@ -43,7 +43,7 @@ Scene two_layers(int n, bool numbers_alternate) {
 // Checks that all nodes are where they are drawn. Energies and forces must be those of the drawn
 // nodes, at the start and near it.
 void check_all(const Scene& scene) {
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   // Tolerances of mirrors, 64 eps, and turning there and back.
   BOOST_TEST(farthest(reduced.expand(reduced.initial()), at_start(scene)) < 1e3 * eps);
   for (const std::string& sentence : compare_states(scene, 1).disagreements) BOOST_ERROR(sentence);
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(layers_of_a_grid_keep_all_of_their_mass) {
       const Scene scene = two_layers(n, numbers_alternate);
       BOOST_TEST_CONTEXT(n << " by " << n) {
         check_all(scene);
-        const ReducedScene reduced(scene);
+        const Model reduced(scene);
         BOOST_TEST(reduced.parts().front().mirrors().count == 2);
         // Both layers of a quarter; those on a mirror have one coordinate, the middle has none.
         BOOST_TEST(reduced.system().size() == 2 * (n / 2) * (n / 2) * 2 + n % 2 * 2 * 2 * (n / 2));
@@ -76,7 +76,7 @@ BOOST_AUTO_TEST_CASE(whatever_coincides_moves_as_drawn) {
     if (kind != "mirrored" && kind != "coincident") continue;
     BOOST_TEST_CONTEXT(kind << ", seed " << seed) {
       check_all(scene);
-      const ReducedScene reduced(scene);
+      const Model reduced(scene);
       for (const qddot::reduce::Part& part : reduced.parts()) found += part.mirrors().count;
     }
   }
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(twins_that_nothing_tells_apart_are_swapped_by_mirrors_that_
       for (const std::size_t j : {next, next + 1}) scene.springs.push_back({{i, j}, {30, 1.5}});
     }
     check_all(scene);
-    const ReducedScene reduced(scene);
+    const Model reduced(scene);
     BOOST_TEST(reduced.parts().front().mirrors().count == 2);
     BOOST_TEST(reduced.system().size() == 4);
   }
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(a_ring_that_winds_twice_has_one_mirror) {
     scene.springs.push_back({{i, (i + 1) % 8}, {30, 1.5}});
   }
   check_all(scene);
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.parts().front().mirrors().count == 1);
 }
 

@@ -36,7 +36,7 @@ Scene trembling() {
   return scene;
 }
 
-State run(const ReducedScene& scene, double until) {
+State run(const Model& scene, double until) {
   return state_after(scene, method_named("kahan_li8"), 1e-3, until);
 }
 
@@ -44,7 +44,7 @@ State run(const ReducedScene& scene, double until) {
 
 BOOST_AUTO_TEST_CASE(what_rests_in_its_fall_has_no_unknowns) {
   const Scene scene = tetrahedron();
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.system().size() == 0);
   BOOST_TEST(contains(sentence(reduced, Reduction::falling), {"1 part without pins is at rest"}));
   const State later{2.5, Vec(0), Vec(0)};
@@ -63,8 +63,7 @@ BOOST_AUTO_TEST_CASE(what_rests_in_its_fall_has_no_unknowns) {
 }
 
 BOOST_AUTO_TEST_CASE(the_motion_about_the_centre_of_mass_and_the_fall_are_the_drawn_motion) {
-  const ReducedScene reduced(trembling()),
-      drawn(trembling(), Reductions().without(Reduction::falling));
+  const Model reduced(trembling()), drawn(trembling(), Reductions().without(Reduction::falling));
   BOOST_TEST(!has(drawn, Reduction::falling));
   BOOST_TEST(reduced.system().size() == 12);
   for (const double t : {0.3, 2.0}) {
@@ -83,11 +82,11 @@ BOOST_AUTO_TEST_CASE(a_fall_hides_neither_lines_nor_mirrors) {
     scene.nodes.push_back({.position = {1, 2 + 1.1 * x, 3}, .velocity = {4, x, 5}, .mass = 1});
   }
   scene.springs = {{{0, 1}, {90, 1}}, {{1, 2}, {90, 1}}};
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.system().size() == 1);  // one end; the middle rests
   BOOST_TEST(reduced.system().stiffness_is_constant());
   BOOST_TEST(contains(sentence(reduced, Reduction::dimension), {"about the centre of mass"}));
-  const ReducedScene drawn(scene, Reductions::only({}));
+  const Model drawn(scene, Reductions::only({}));
   BOOST_TEST(farthest(reduced.expand(run(reduced, 1)), drawn.expand(run(drawn, 1))) < 1e-11);
 }
 
@@ -97,24 +96,24 @@ BOOST_AUTO_TEST_CASE(only_what_rests_by_construction_is_left_out) {
   Scene pressed{.dimension = 2, .gravity = {0, -9.81, 0}};
   for (const double x : {0., 1., 2.}) pressed.nodes.push_back({.position = {x, 0, 0}, .mass = 1});
   pressed.springs = {{{0, 1}, {10, 1.5}}, {{1, 2}, {10, 1.5}}, {{0, 2}, {10, 1.5}}};
-  BOOST_TEST(ReducedScene(pressed).system().size() > 0);
+  BOOST_TEST(Model(pressed).system().size() > 0);
   Scene pinned = tetrahedron();
   pinned.nodes[0].pinned = true;
-  BOOST_TEST(!has(ReducedScene(pinned), Reduction::falling));
+  BOOST_TEST(!has(Model(pinned), Reduction::falling));
   // A spring that is strained by more than rounding.
   Scene strained = tetrahedron();
   strained.springs[0].law.rest_length *= 1 + 1e-12;
-  BOOST_TEST(ReducedScene(strained).system().size() == 12);
+  BOOST_TEST(Model(strained).system().size() == 12);
   // Without mass nothing says how it falls.
   Scene massless = tetrahedron();
   for (Node& node : massless.nodes) node.mass = 0;
-  BOOST_TEST(!has(ReducedScene(massless), Reduction::falling));
+  BOOST_TEST(!has(Model(massless), Reduction::falling));
   // Statics have a falling body fall.
-  BOOST_TEST(!has(ReducedScene(tetrahedron(), Reductions::all_directions()), Reduction::falling));
+  BOOST_TEST(!has(Model(tetrahedron(), Reductions::all_directions()), Reduction::falling));
 }
 
 BOOST_AUTO_TEST_CASE(errors_are_measured_beside_the_fall) {
-  const ReducedScene reduced(trembling());
+  const Model reduced(trembling());
   Scales scales;
   for (const double t : {0.1, 0.2, 0.3, 5.0}) extend(scales, reduced, run(reduced, t));
   // It falls 110 m at 50 m/s, and trembles by 0.1 m at 0.5 m/s.
@@ -130,7 +129,7 @@ BOOST_AUTO_TEST_CASE(errors_are_measured_beside_the_fall) {
     node.position.x() += 10;
     two.nodes.push_back(node);
   }
-  const ReducedScene both(two);
+  const Model both(two);
   BOOST_TEST(both.system().size() == 12);
   Scales of_both;
   extend(of_both, both, run(both, 0.3));

@@ -44,11 +44,11 @@ const Eigen::Vector3d shift(1048576, -524288, 2097152);  // 2^20 and neighbours 
 BOOST_AUTO_TEST_CASE(a_deviation_far_above_the_local_rounding_breaks_planes_and_mirrors) {
   // The last bit at a million metres, 2^-32 m, is 10^6 times the rounding of a metre.
   const Eigen::Vector3d by(shift.x(), shift.y(), 0);
-  BOOST_TEST(has(ReducedScene(moved_by(strut(0), by).there), Reduction::dimension));
+  BOOST_TEST(has(Model(moved_by(strut(0), by).there), Reduction::dimension));
   for (const double off : {0x1p-32, 0x1p-28}) {
     const auto [here, there] = moved_by(strut(off), by);
-    BOOST_TEST(!has(ReducedScene(here), Reduction::dimension));
-    BOOST_TEST(!has(ReducedScene(there), Reduction::dimension));
+    BOOST_TEST(!has(Model(here), Reduction::dimension));
+    BOOST_TEST(!has(Model(there), Reduction::dimension));
   }
   Scene cloth = draw("cloth", {{"nodes", 6}});
   for (Node& node : cloth.nodes) {  // places that a shift does not round
@@ -56,9 +56,9 @@ BOOST_AUTO_TEST_CASE(a_deviation_far_above_the_local_rounding_breaks_planes_and_
   }
   for (Spring& spring : cloth.springs) spring.law.rest_length = 0.1;
   cloth = moved_by(cloth, shift).there;
-  BOOST_TEST(has(ReducedScene(cloth), Reduction::mirror));
+  BOOST_TEST(has(Model(cloth), Reduction::mirror));
   cloth.nodes[8].position.x() += 0x1p-32;
-  BOOST_TEST(!has(ReducedScene(cloth), Reduction::mirror));
+  BOOST_TEST(!has(Model(cloth), Reduction::mirror));
 }
 
 BOOST_AUTO_TEST_CASE(the_reduced_system_is_bit_for_bit_that_of_the_scene_at_home) {
@@ -76,7 +76,7 @@ BOOST_AUTO_TEST_CASE(the_reduced_system_is_bit_for_bit_that_of_the_scene_at_home
     for (const Reductions& reductions :
          {Reductions(), Reductions::only({}), Reductions::only({Reduction::pins}),
           Reductions().without(Reduction::dimension).without(Reduction::mirror)}) {
-      const ReducedScene a(here, reductions), b(there, reductions);
+      const Model a(here, reductions), b(there, reductions);
       BOOST_TEST_REQUIRE(a.initial().q.size() == b.initial().q.size());
       BOOST_TEST((a.initial().q == b.initial().q));
       BOOST_TEST((a.initial().v == b.initial().v));
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(the_reduced_system_is_bit_for_bit_that_of_the_scene_at_home
 
 BOOST_AUTO_TEST_CASE(scenes_that_lie_about_the_origin_keep_their_coordinates) {
   for (const Generator& generator : generators()) {
-    const ReducedScene reduced(draw(std::string(generator.name)));
+    const Model reduced(draw(std::string(generator.name)));
     for (const qddot::reduce::Part& part : reduced.parts()) {
       BOOST_TEST((part.origin() == Eigen::Vector3d::Zero()), generator.name);
     }
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(scenes_that_lie_about_the_origin_keep_their_coordinates) {
 
 BOOST_AUTO_TEST_CASE(weights_count_from_the_scenes_origin) {
   const Scene cloth = moved_by(draw("cloth", {{"nodes", 5}}), shift).there;
-  const ReducedScene reduced(cloth);
+  const Model reduced(cloth);
   const double v = potential_by_hand(cloth, cloth.nodes);
   // 25 weights at a million metres and more, each rounded.
   BOOST_TEST(std::abs(reduced.potential(reduced.initial()) - v) <= 100 * eps * std::abs(v));

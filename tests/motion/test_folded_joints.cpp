@@ -19,7 +19,7 @@ Scene folded(double joint, double k, double l0, int dimension = 1) {
   return scene;
 }
 
-bool is_kept(const Scene& scene) { return !ReducedScene(scene).massless_nodes().empty(); }
+bool is_kept(const Scene& scene) { return !Model(scene).massless_nodes().empty(); }
 
 // The place of the mass at 0.1 s by steps of implicit Euler, which puts joints where f = 0.
 double end_of(const Scene& scene) {

@@ -51,7 +51,7 @@ BOOST_AUTO_TEST_CASE(a_strain_of_1e_8_has_all_digits_of_its_energy) {
       for (const int nodes : {2, 5, 30}) {
         if (pins == nodes) continue;
         const Scene scene = row(strain, pins, nodes);
-        const ReducedScene reduced(scene);
+        const Model reduced(scene);
         BOOST_TEST(reduced.parts().front().is_straightened());
         const auto v = static_cast<double>(potential_in_full(scene, scene.nodes));
         // Differences of neighbours lose no digit (Sterbenz). Mirrors place one half by the other,
@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_CASE(a_strain_of_1e_8_has_all_digits_of_its_energy) {
 BOOST_AUTO_TEST_CASE(the_energy_of_an_exact_motion_is_kept_to_rounding_of_its_strains) {
   const double strain = 1e-8;
   const Scene scene = row(strain, 1, 5);
-  const ReducedScene reduced(scene, Reductions().without(Reduction::mirror));
+  const Model reduced(scene, Reductions().without(Reduction::mirror));
   BOOST_TEST(reduced.parts().front().is_straightened());
   const double start = reduced.energy(reduced.initial());
   State state = reduced.initial();
@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(the_energy_of_an_exact_motion_is_kept_to_rounding_of_its_st
 BOOST_AUTO_TEST_CASE(weights_and_mirrors_count_too) {
   Scene scene = row(1e-8, 1, 6);
   scene.gravity.x() = 1e-7;
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   State state = reduced.initial();
   for (Index i = 0; i < state.q.size(); ++i)
     state.q[i] += 1e-9 * std::sin(2. * static_cast<double>(i));

@@ -20,7 +20,7 @@ std::vector<Node> end_of(const Scene& scene, const Reductions& reductions) {
 Scene rotated(const Scene& scene) { return turned(scene, some_rotation(), {1, 2, 3}); }
 
 void check_motion(const Scene& scene, Reduction reduction) {
-  BOOST_TEST(has(ReducedScene(scene), reduction));
+  BOOST_TEST(has(Model(scene), reduction));
   const auto reduced = end_of(scene, {}), drawn = end_of(scene, Reductions().without(reduction));
   // Rounding of the positions in 500 steps, relative to the largest displacement: these motions are
   // regular and magnify it by less than a hundred.
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(unknowns_tell_how_far_nodes_are_apart) {
   int seen = 0, with_mirrors = 0;
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
     const auto [scene, kind] = random_scene(seed);
-    const ReducedScene reduced(scene);
+    const Model reduced(scene);
     const auto parts = reduced.nodes_by_part();
     State here = reduced.initial(), there = here;
     for (double& q : there.q) q += normal(random);

@@ -28,7 +28,7 @@ void for_each_whole(const System& system, const Vec& q, const Action& action) {
 }
 
 // V of the stiff springs of all parts.
-double stiff_potential(const ReducedScene& reduced, const Vec& q) {
+double stiff_potential(const Model& reduced, const Vec& q) {
   double v = 0;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {
     BOOST_TEST_REQUIRE(part.split());
@@ -51,7 +51,7 @@ double stiff_potential_by_hand(const Scene& scene, const std::vector<Node>& node
 
 // Whether V, f and K of the stiff and the soft springs add up to those of the whole. Rounding is
 // that of some 30 springs at a node.
-bool adds_up(const ReducedScene& reduced, const Vec& q) {
+bool adds_up(const Model& reduced, const Vec& q) {
   bool good = true;
   for_each_whole(reduced.system(), q, [&](const System& part, const Vec& own) {
     BOOST_TEST_REQUIRE(part.split());
@@ -70,7 +70,7 @@ bool adds_up(const ReducedScene& reduced, const Vec& q) {
 }
 
 // A state beside the start.
-State moved(const ReducedScene& reduced) {
+State moved(const Model& reduced) {
   State state = reduced.initial();
   for (Index i = 0; i < state.q.size(); ++i) state.q[i] += 0.01 * std::sin(1.7 * double(i));
   return state;
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(naming_stiff_springs_changes_no_bit_of_anything_else) {
     Scene unnamed = scene;
     unnamed.stiff_above.reset();
     for (const Reductions& reductions : with_and_without) {
-      const ReducedScene a(scene, reductions), b(unnamed, reductions);
+      const Model a(scene, reductions), b(unnamed, reductions);
       const Vec q = moved(a).q;
       BOOST_TEST_REQUIRE(a.system().size() == b.system().size());
       BOOST_TEST((a.initial().q == b.initial().q && a.initial().v == b.initial().v));
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(stiff_and_soft_are_together_the_whole_and_stiff_is_what_was
     for (const Reductions& reductions :
          {Reductions(), Reductions::only({Reduction::pins}), Reductions::only({}),
           Reductions().without(Reduction::parts), Reductions().without(Reduction::free_flight)}) {
-      const ReducedScene reduced(scene, reductions);
+      const Model reduced(scene, reductions);
       for (const State& state : {reduced.initial(), moved(reduced)}) {
         BOOST_TEST(adds_up(reduced, state.q));
         if (!reductions.has(Reduction::pins)) continue;  // moved as well
@@ -160,7 +160,7 @@ BOOST_AUTO_TEST_CASE(stiff_and_soft_are_together_the_whole_and_stiff_is_what_was
 BOOST_AUTO_TEST_CASE(the_stiff_pattern_of_a_frame_has_no_more_than_its_border) {
   const Scene scene = draw("framed_cloth", {{"nodes", 6}});
   const auto entries = [&](const Reductions& reductions) {
-    const ReducedScene reduced(scene, reductions);
+    const Model reduced(scene, reductions);
     return reduced.system().split()->stiff->stiffness_pattern().nonZeros();
   };
   // Blocks of 6 entries for the diagonal, and of 9 for each border spring between free nodes. A
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(of_springs_that_become_one_the_one_is_stiff_if_any_is) {
   scene.nodes = {{.pinned = true}, {.position = {1, 0, 0}, .velocity = {0, 1, 0}, .mass = 1}};
   scene.springs = {{{0, 1}, {40, 0.9}}, {{1, 0}, {70, 0.9}}, {{0, 1}, {50, 0.8}}};
   const auto stiff = [&](double above) {
-    const ReducedScene reduced(named(scene, above));
+    const Model reduced(named(scene, above));
     return stiff_potential(reduced, reduced.initial().q);
   };
   const double one = 55 * 0.1 * 0.1, two = 25 * 0.2 * 0.2;  // 110 N/m of 0.9 m, 50 N/m of 0.8 m
@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(images_on_both_sides_of_the_border_are_one_stiff_spring) {
   for (const std::size_t edge : {0u, 2u, 4u, 6u}) {
     Scene scene = named(square(), 80);
     scene.springs[edge].law.stiffness = std::nextafter(80, 100);
-    const ReducedScene reduced(scene);
+    const Model reduced(scene);
     BOOST_TEST(has(reduced, Reduction::mirror));
     BOOST_TEST(adds_up(reduced, reduced.initial().q));
     BOOST_TEST(stiff_potential(reduced, reduced.initial().q) == 2 * 40 * 0.4 * 0.4,
@@ -206,14 +206,14 @@ BOOST_AUTO_TEST_CASE(images_on_both_sides_of_the_border_are_one_stiff_spring) {
 BOOST_AUTO_TEST_CASE(a_series_is_stiff_where_the_spring_that_it_is_would_be) {
   const double v = 10 * 0.3 * 0.3;  // 20 N/m, 0.9 m long, drawn out to 1.2 m
   for (const auto& [above, energy] : {std::pair(19.9, v), {20.1, 0.}, {40., 0.}, {80., 0.}}) {
-    const ReducedScene reduced(named(in_series(), above));
+    const Model reduced(named(in_series(), above));
     BOOST_TEST(has(reduced, Reduction::massless));
     BOOST_TEST(adds_up(reduced, reduced.initial().q));
     BOOST_TEST(stiff_potential(reduced, reduced.initial().q) == energy,
                boost::test_tools::tolerance(100 * eps));
   }
   // Left as drawn, each spring counts for itself.
-  const ReducedScene drawn(named(in_series(), 40), Reductions().without(Reduction::massless));
+  const Model drawn(named(in_series(), 40), Reductions().without(Reduction::massless));
   BOOST_TEST(stiff_potential(drawn, drawn.initial().q) == 30 * 0.2 * 0.2,
              boost::test_tools::tolerance(100 * eps));
 }
@@ -227,7 +227,7 @@ BOOST_AUTO_TEST_CASE(on_a_line_stiff_springs_keep_their_rest_length) {
   }
   scene.springs = {
       {{0, 1}, {1000, 1.1}}, {{2, 1}, {1e4, 0.9}}, {{2, 3}, {400, 1.1}}, {{3, 4}, {2000, 1.1}}};
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.parts().front().is_straightened());
   const Vec& q = reduced.initial().q;
   const System& stiff = *reduced.system().split()->stiff;
@@ -249,14 +249,14 @@ BOOST_AUTO_TEST_CASE(every_part_offers_a_split_whatever_springs_it_has) {
     }
     scene.springs.push_back({{first, first + 1}, {k, 0.9}});
   }
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST_REQUIRE(reduced.system().blocks().size() == 2u);
   for (const auto& block : reduced.system().blocks()) BOOST_TEST_REQUIRE(block->split());
   BOOST_TEST(stiff_potential(reduced, reduced.initial().q) == 250 * 0.1 * 0.1,
              boost::test_tools::tolerance(100 * eps));
   for (Node& node : scene.nodes) node.pinned = true;
-  BOOST_TEST(ReducedScene(scene).system().split());
-  BOOST_TEST(split_of(ReducedScene(scene, Reductions::only({})).system()));
+  BOOST_TEST(Model(scene).system().split());
+  BOOST_TEST(Model(scene, Reductions::only({})).system().split());
 }
 
 BOOST_AUTO_TEST_CASE(a_border_that_is_no_positive_number_is_refused) {

@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(plain_and_our_accelerations_agree) {
   scene.nodes.push_back({.position = {2, 3, 3}, .mass = 0.5});
   scene.springs.push_back({{1, 2}, {.stiffness = 30, .rest_length = 0.7, .quartic = 5}});
   scene.springs.push_back({{2, 0}, {.stiffness = 20, .rest_length = 0.5}});
-  const ReducedScene reduced(scene, Reductions::only({Reduction::pins}));
+  const Model reduced(scene, Reductions::only({Reduction::pins}));
   Acceleration plain(scene, reduced.system(), ForceKind::plain);
   Acceleration ours(scene, reduced.system(), ForceKind::ours);
   Vec a(6), b(6);

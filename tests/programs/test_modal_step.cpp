@@ -12,14 +12,14 @@ using namespace qddot::stability_map;
 
 namespace {
 
-ReducedScene at_rest(const char* generator, const GeneratorValues& values) {
-  return ReducedScene(settled(generate(*find_generator(generator), values, generator), generator),
-                      Reductions::all_directions());
+Model at_rest(const char* generator, const GeneratorValues& values) {
+  return Model(settled(generate(*find_generator(generator), values, generator), generator),
+               Reductions::all_directions());
 }
 
 // Some masses under their weight on springs, hanging from two ends in space.
-const ReducedScene& hanging_chain() {
-  static const ReducedScene scene =
+const Model& hanging_chain() {
+  static const Model scene =
       at_rest("chain", {{"nodes", 8}, {"pinned_ends", 2}, {"stiffness", 500}});
   return scene;
 }

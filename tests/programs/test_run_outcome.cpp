@@ -15,9 +15,9 @@ namespace {
 
 struct Case {
   Scene drawn;
-  ReducedScene scene{drawn};
+  Model scene{drawn};
   double rest_energy = [this] {
-    const ReducedScene rest(settled(drawn, drawn.name), Reductions::only({Reduction::pins}));
+    const Model rest(settled(drawn, drawn.name), Reductions::only({Reduction::pins}));
     return rest.potential(rest.initial());
   }();
 

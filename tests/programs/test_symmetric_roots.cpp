@@ -6,7 +6,7 @@
 #include "experiments/symmetric_roots/orbit_swing.hpp"
 #include "qddot/integrators/base/symmetric_formula.hpp"
 #include "qddot/integrators/registry.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "tests/symmetric_formulas.hpp"
 
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(angles_are_those_of_a_quadratic_equation_for_four_steps) {
 }
 
 BOOST_AUTO_TEST_CASE(the_orbit_does_what_it_does_in_runs_of_the_methods) {
-  const ReducedScene scene(load_scene("orbit"));
+  const Model scene(load_scene("orbit"));
   constexpr double omega = 10, at = 0.2;  // [rad/s]
   constexpr int steps = 2000;
   const OrbitSwing orbit(at, steps, 12);

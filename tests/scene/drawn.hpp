@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "qddot/scene/generators.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot {
 inline namespace tests {
@@ -62,12 +62,12 @@ inline Scene square(int dimension = 2) {
   return scene;
 }
 
-inline bool has(const ReducedScene& scene, Reduction reduction) {
+inline bool has(const Model& scene, Reduction reduction) {
   return std::ranges::count(scene.findings(), reduction, &Finding::reduction) > 0;
 }
 
 // The sentence on a reduction that was found; empty if it was not.
-inline std::string sentence(const ReducedScene& scene, Reduction reduction) {
+inline std::string sentence(const Model& scene, Reduction reduction) {
   for (const Finding& finding : scene.findings()) {
     if (finding.reduction == reduction) return finding.what;
   }
@@ -75,7 +75,7 @@ inline std::string sentence(const ReducedScene& scene, Reduction reduction) {
 }
 
 // Another state of the reduced scene: every coordinate and velocity changed by up to `change`.
-inline State moved(const ReducedScene& reduced, double change, std::mt19937& random) {
+inline State moved(const Model& reduced, double change, std::mt19937& random) {
   std::uniform_real_distribution<double> part(-change, change);
   State state = reduced.initial();
   for (double& x : state.q) x += part(random);

@@ -64,12 +64,12 @@ BOOST_AUTO_TEST_CASE(what_underflows_is_no_difference) {
   }
   for (Spring& spring : light.springs) spring.law.stiffness = 0x1p-1074;
   for (const Reductions& set : {Reductions(), Reductions::only({})})
-    BOOST_CHECK_NO_THROW(ReducedScene(light, set));
+    BOOST_CHECK_NO_THROW(Model(light, set));
 }
 
 BOOST_AUTO_TEST_CASE(lines_and_planes_are_named_by_what_they_are) {
   const auto sentence = [](const Scene& scene) {
-    return tests::sentence(ReducedScene(scene), Reduction::dimension);
+    return tests::sentence(Model(scene), Reduction::dimension);
   };
   // A pair that swings along the line from (1, 2) to (4, 6).
   Scene pair{.dimension = 2};

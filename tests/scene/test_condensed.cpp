@@ -32,14 +32,12 @@ Scene row(double speed, bool is_pinned) {
   for (std::size_t i = 0; i < 3; ++i) scene.springs.push_back({{i, i + 1}, {100, 1}});
   return scene;
 }
-bool is_straight(const Scene& scene) {
-  return ReducedScene(scene).system().stiffness_is_constant();
-}
+bool is_straight(const Scene& scene) { return Model(scene).system().stiffness_is_constant(); }
 
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(series_have_the_sum_of_compliances_and_rest_lengths) {
-  const ReducedScene reduced(two_in_series(1.2));
+  const Model reduced(two_in_series(1.2));
   BOOST_TEST(reduced.massless_nodes().empty());
   // 20 N/m and 0.9 m: f = -20 (1.2 - 0.9).
   BOOST_TEST(force_at(reduced.system(), reduced.initial().q)[0] == -6,
@@ -51,13 +49,13 @@ BOOST_AUTO_TEST_CASE(series_have_the_sum_of_compliances_and_rest_lengths) {
 }
 
 BOOST_AUTO_TEST_CASE(series_hold_in_tension_only) {
-  BOOST_TEST(ReducedScene(two_in_series(0.9 * (1 + 1e-9))).massless_nodes().empty());
-  BOOST_TEST(ReducedScene(two_in_series(0.9)).massless_nodes().empty());
+  BOOST_TEST(Model(two_in_series(0.9 * (1 + 1e-9))).massless_nodes().empty());
+  BOOST_TEST(Model(two_in_series(0.9)).massless_nodes().empty());
   // They fold up in compression: the node stays, and is named.
-  const ReducedScene compressed(two_in_series(0.9 * (1 - 1e-9)));
+  const Model compressed(two_in_series(0.9 * (1 - 1e-9)));
   BOOST_TEST((compressed.massless_nodes() == std::vector<std::size_t>{1}));
 
-  const ReducedScene reduced(two_in_series(1.2));
+  const Model reduced(two_in_series(1.2));
   Vec q = reduced.initial().q;
   q.setZero();
   q[0] = 0.9 * (1 + 1e-9);
@@ -70,7 +68,7 @@ BOOST_AUTO_TEST_CASE(what_is_no_series_is_left) {
   const auto is_left = [](const auto& change) {
     Scene scene = two_in_series(1.2);
     change(scene);
-    return !ReducedScene(scene).massless_nodes().empty();
+    return !Model(scene).massless_nodes().empty();
   };
   BOOST_TEST(!is_left([](Scene&) {}));
   BOOST_TEST(is_left([](Scene& s) { s.springs[0].law.quartic = 1; }));
@@ -102,7 +100,7 @@ BOOST_AUTO_TEST_CASE(long_series_are_one_spring) {
   for (std::size_t i = 20; i > 0; --i) {
     scene.springs.push_back({{i, i - 1}, {100. + static_cast<double>(i), 0.1}});
   }
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.system().size() == 1);
   double compliance = 0;
   for (int i = 1; i <= 20; ++i) compliance += 1 / (100. + i);
@@ -152,7 +150,7 @@ BOOST_AUTO_TEST_CASE(only_linear_laws_on_a_line_are_straightened) {
   plane.dimension = 2;
   plane.nodes[1].velocity.y() = 1e-3;
   BOOST_TEST(!is_straight(plane));
-  BOOST_TEST(!ReducedScene(row(1, true), Reductions().without(Reduction::constant_stiffness))
+  BOOST_TEST(!Model(row(1, true), Reductions().without(Reduction::constant_stiffness))
                   .system()
                   .stiffness_is_constant());
 }
@@ -162,7 +160,7 @@ BOOST_AUTO_TEST_CASE(nodes_on_no_spring_fly_in_closed_form) {
   scene.nodes = {{.position = {1, 2, 3}, .velocity = {4, 5, 6}, .mass = 2},
                  {.position = {0, 0, 1}, .velocity = {1, 0, 0}},  // no weight without mass
                  {.position = {7, 7, 7}, .velocity = {1, 1, 1}, .pinned = true}};
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.system().size() == 0);
   const State later{0.5, Vec(), Vec()};
   const auto nodes = reduced.expand(later);
@@ -184,7 +182,7 @@ BOOST_AUTO_TEST_CASE(a_scene_is_expanded_to_the_same_in_memory_that_holds_anothe
   for (const double x : {5, 6})
     scene.nodes.push_back({.position = {x, 5, 5}, .velocity = {0, x, 0}, .mass = 1});
   scene.springs.push_back({{4, 5}, {100, 0.8}});
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_REQUIRE(reduced.findings().size() >= 4);
   const State& start = reduced.initial();
   const State later{0.5, start.q + 0.01 * start.v, 2 * start.v};

@@ -11,7 +11,7 @@ using namespace qddot;
 namespace {
 
 Explanation explained(const Scene& scene, const Reductions& reductions = {}) {
-  return explain(scene, ReducedScene(scene, reductions));
+  return explain(scene, Model(scene, reductions));
 }
 
 // Three nodes on the x axis between two pins, springs shorter or longer than drawn.
@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(it_counts_unknowns_and_gives_the_stable_step) {
 BOOST_AUTO_TEST_CASE(a_glance_at_a_large_scene_looks_for_no_eigenvalues) {
   for (const double nodes : {10., 60.}) {
     const Scene scene = draw("cloth", {{"nodes", nodes}});
-    const Explanation glance = explain(scene, ReducedScene(scene), at_a_glance);
+    const Explanation glance = explain(scene, Model(scene), at_a_glance);
     const bool is_small = 3 * nodes * nodes <= 6000;
     BOOST_TEST(glance.is_examined == is_small);
     BOOST_TEST(std::isfinite(glance.omega_max) == is_small);

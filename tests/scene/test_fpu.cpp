@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(it_starts_with_all_vibration_in_the_first_stiff_spring) {
   for (const double m : {1., 2., 3., 7.}) {
     for (const double w : {1., 7., 50., 100.}) {
       const Scene scene = draw("fpu", {{"stiff_springs", m}, {"frequency", w}});
-      const ReducedScene reduced(scene);
+      const Model reduced(scene);
       const Vec energies = stiff_energies(scene, scene.nodes);
       Vec expected = Vec::Zero(static_cast<Index>(m));
       expected[0] = 1;
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(it_starts_with_all_vibration_in_the_first_stiff_spring) {
 BOOST_AUTO_TEST_CASE(reductions_leave_nothing_out_but_the_walls) {
   for (const double m : {1., 3.}) {
     const Scene scene = draw("fpu", {{"stiff_springs", m}});
-    const ReducedScene reduced(scene);
+    const Model reduced(scene);
     BOOST_TEST(reduced.system().size() == 2 * static_cast<Index>(m));
     BOOST_TEST(!reduced.system().stiffness_is_constant());
     BOOST_TEST_REQUIRE(reduced.findings().size() == 1u);

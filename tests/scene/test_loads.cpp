@@ -20,8 +20,8 @@ Scene loaded(Scene scene, std::size_t node, const Vector3d& load) {
   return scene;
 }
 
-bool is_mirrored(const Scene& scene) { return has(ReducedScene(scene), Reduction::mirror); }
-bool is_flat(const Scene& scene) { return has(ReducedScene(scene), Reduction::dimension); }
+bool is_mirrored(const Scene& scene) { return has(Model(scene), Reduction::mirror); }
+bool is_flat(const Scene& scene) { return has(Model(scene), Reduction::dimension); }
 
 Scene cloth() { return draw("cloth", {{"nodes", 6}}); }
 
@@ -109,18 +109,18 @@ BOOST_AUTO_TEST_CASE(a_load_out_of_the_plane_leaves_it) {
   Scene off = tilted;
   off.nodes[3].load += 1e-10 * (some_rotation() * Vector3d::UnitY());
   BOOST_TEST(!is_flat(off));
-  BOOST_TEST(contains(sentence(ReducedScene(tilted), Reduction::dimension), {"gravity and loads"}));
+  BOOST_TEST(contains(sentence(Model(tilted), Reduction::dimension), {"gravity and loads"}));
 }
 
 BOOST_AUTO_TEST_CASE(a_massless_joint_with_a_load_stays) {
   Scene scene = held(0);
-  BOOST_TEST(ReducedScene(scene).system().size() == 0);
-  BOOST_TEST(ReducedScene(loaded(scene, 1, {0, 1, 0})).system().size() == 2);
+  BOOST_TEST(Model(scene).system().size() == 0);
+  BOOST_TEST(Model(loaded(scene, 1, {0, 1, 0})).system().size() == 2);
 }
 
 BOOST_AUTO_TEST_CASE(what_loads_pull_apart_does_not_rest_in_its_fall) {
-  BOOST_TEST(ReducedScene(dumbbell()).system().size() == 0);
-  const ReducedScene along(loaded(dumbbell(), 0, {0.5, 0, 0})),
+  BOOST_TEST(Model(dumbbell()).system().size() == 0);
+  const Model along(loaded(dumbbell(), 0, {0.5, 0, 0})),
       across(loaded(dumbbell(), 0, {0.5, 0.1, 0}));
   BOOST_TEST(along.system().size() == 2);
   BOOST_TEST(across.system().size() == 4);
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(springs_count_as_straight_only_where_loads_turn_none) {
   for (const double x : {0.0, 1.0}) free.nodes.push_back({.position = {x, 0, 0}, .mass = 1});
   free.springs = {{{0, 1}, {10, 1}}};
   const auto is_straight = [](const Scene& scene) {
-    return ReducedScene(scene, Reductions().without(Reduction::falling).without(Reduction::mirror))
+    return Model(scene, Reductions().without(Reduction::falling).without(Reduction::mirror))
         .parts()
         .front()
         .is_straightened();
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(springs_count_as_straight_only_where_loads_turn_none) {
 BOOST_AUTO_TEST_CASE(a_node_on_no_spring_flies_with_its_load) {
   Scene scene{.dimension = 3, .gravity = {0, 0, -9.81}};
   scene.nodes = {{.position = {1, 2, 3}, .velocity = {1, 0, 2}, .mass = 2, .load = {3, -1, 0.5}}};
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.system().size() == 0);
   const double t = 1.5;
   const State later{t, Vec(0), Vec(0)};

@@ -152,7 +152,7 @@ std::vector<Case> cases() {
 BOOST_AUTO_TEST_CASE(each_reduction_is_found_and_can_be_left_out) {
   for (const auto& [name, scene, reduction, unknowns] : cases()) {
     BOOST_TEST_CONTEXT(name) {
-      const ReducedScene with(scene), without(scene, Reductions().without(reduction));
+      const Model with(scene), without(scene, Reductions().without(reduction));
       BOOST_TEST(has(with, reduction));
       BOOST_TEST(!has(without, reduction));
       BOOST_TEST(with.system().size() == unknowns);
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(each_reduction_is_found_and_can_be_left_out) {
 
 BOOST_AUTO_TEST_CASE(the_start_is_the_scene_as_drawn) {
   for (const auto& [name, scene, reduction, unknowns] : cases()) {
-    const ReducedScene reduced(scene);
+    const Model reduced(scene);
     const auto nodes = reduced.expand(reduced.initial());
     // Positions of about 10 m, turned there and back; random scenes are not turned.
     BOOST_TEST(farthest(nodes, at_start(scene)) <= (name == "random" ? 0 : 50 * eps * 10), name);
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(energies_are_those_of_all_nodes_and_springs) {
   for (const auto& [name, scene, reduction, unknowns] : cases()) {
     for (const Reductions& set : {Reductions(), Reductions().without(reduction),
                                   Reductions::only({}), Reductions::only({reduction})}) {
-      const ReducedScene reduced(scene, set);
+      const Model reduced(scene, set);
       std::mt19937 random(1);
       for (int sample = 0; sample < 2; ++sample) {
         State state = moved(reduced, 0.05, random);
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(energies_are_those_of_all_nodes_and_springs) {
 BOOST_AUTO_TEST_CASE(force_and_stiffness_are_derivatives_of_the_scenes_own_potential) {
   for (const auto& [name, scene, reduction, unknowns] : cases()) {
     BOOST_TEST_CONTEXT(name) {
-      const ReducedScene reduced(scene);
+      const Model reduced(scene);
       std::mt19937 random(3);
       const State state = moved(reduced, 0.02, random);
       Scene pulling = scene;  // in a frame that falls nothing has weight but by its loads

@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_CASE(only_positions_and_the_flag_change) {
 
 BOOST_AUTO_TEST_CASE(forces_vanish_at_the_new_positions) {
   const Scene rest = settled(draw("lattice", {{"nodes_x", 6}, {"nodes_y", 3}, {"nodes_z", 3}}), "");
-  const ReducedScene reduced(rest, Reductions::all_directions());
+  const Model reduced(rest, Reductions::all_directions());
   const Vec f = force_at(reduced.system(), reduced.initial().q);
   // Rounding of positions of 1 m, times the row sums of 26 springs of 5e4 N/m.
   BOOST_TEST(f.lpNorm<Eigen::Infinity>() < 4 * 26 * 5e4 * eps);

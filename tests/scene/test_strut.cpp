@@ -51,7 +51,7 @@ BOOST_AUTO_TEST_CASE(straight_it_buckles_at_the_rates_of_the_closed_form) {
                                          {"bend", 0},
                                          {"stiffness", k},
                                          {"mass", m}});
-      const ReducedScene reduced(scene, Reductions::all_directions());
+      const Model reduced(scene, Reductions::all_directions());
       const int n = nodes - 2;
       BOOST_TEST_REQUIRE(reduced.system().size() == 2 * n);
       Vec expected(2 * n);
@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_CASE(straight_it_buckles_at_the_rates_of_the_closed_form) {
 
 BOOST_AUTO_TEST_CASE(straight_and_bent_it_is_its_own_mirror_image) {
   for (const double bend : {0., 1e-3, 0.2}) {
-    const ReducedScene reduced(draw("strut", {{"bend", bend}}));
+    const Model reduced(draw("strut", {{"bend", bend}}));
     BOOST_TEST(has(reduced, Reduction::mirror));
     BOOST_TEST(has(reduced, Reduction::dimension) == (bend == 0));
     // Five of ten free nodes, in the plane or on the line.

@@ -11,8 +11,8 @@ using namespace qddot;
 
 namespace {
 
-bool is_mirrored(const Scene& scene) { return has(ReducedScene(scene), Reduction::mirror); }
-bool is_flat(const Scene& scene) { return has(ReducedScene(scene), Reduction::dimension); }
+bool is_mirrored(const Scene& scene) { return has(Model(scene), Reduction::mirror); }
+bool is_flat(const Scene& scene) { return has(Model(scene), Reduction::dimension); }
 
 Scene cloth() { return draw("cloth", {{"nodes", 6}}); }
 Scene chain() { return draw("chain", {{"nodes", 6}}); }
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(a_mirror_is_found_wherever_it_lies_and_however_nodes_are_nu
     std::ranges::shuffle(order, random);
     scene = renumbered(scene, order);
     // There are 36 nodes; 2 are pinned, none is on the mirror.
-    BOOST_TEST(ReducedScene(scene).system().size() == 3 * 17);
+    BOOST_TEST(Model(scene).system().size() == 3 * 17);
   }
 }
 
@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(mirrors_of_the_coordinates_order_are_found) {
     scene.springs.push_back({{i, j}, {20, 1}});
   }
   // One of the two beside it, and the one on it along the diagonal.
-  BOOST_TEST(ReducedScene(scene).system().size() == 3);
+  BOOST_TEST(Model(scene).system().size() == 3);
 }
 
 BOOST_AUTO_TEST_CASE(the_slightest_deviation_from_a_plane_of_the_coordinates_counts) {
@@ -123,30 +123,30 @@ BOOST_AUTO_TEST_CASE(a_node_without_mass_is_not_pulled_out_of_a_line) {
   scene.nodes = {
       {.pinned = true}, {.position = {1, 0, 0}}, {.position = {2, 0, 0}, .pinned = true}};
   scene.springs = {{{0, 1}, {10, 0.5, 1}}, {{1, 2}, {10, 0.5, 1}}};
-  const ReducedScene reduced(scene);
+  const Model reduced(scene);
   BOOST_TEST(reduced.system().size() == 1);
-  BOOST_TEST(ReducedScene(with(scene, [](Scene& s) { s.nodes[1].mass = 1; })).system().size() > 1);
+  BOOST_TEST(Model(with(scene, [](Scene& s) { s.nodes[1].mass = 1; })).system().size() > 1);
 }
 
 BOOST_AUTO_TEST_CASE(coordinates_whose_lengths_overflow_are_left_as_they_are) {
   const Scene far = with(turned(chain(), some_rotation(), {0, 0, 0}), [](Scene& s) {
     for (Node& node : s.nodes) node.position *= 1e200;
   });
-  const ReducedScene reduced(far);
+  const Model reduced(far);
   BOOST_TEST(!is_flat(far));
   BOOST_TEST(reduced.initial().q.allFinite());
   BOOST_TEST(reduced.system().size() == 15);
 }
 
 BOOST_AUTO_TEST_CASE(what_lies_in_a_mirror_is_a_plane_and_no_mirror) {
-  const ReducedScene reduced(chain(), Reductions().without(Reduction::dimension));
+  const Model reduced(chain(), Reductions().without(Reduction::dimension));
   BOOST_TEST(!has(reduced, Reduction::mirror));
   BOOST_TEST(reduced.system().size() == 15);
 }
 
 BOOST_AUTO_TEST_CASE(large_symmetric_scenes_take_n_log_n) {
   // 10^5 springs on a grid; with n^2 pairs this test would not end.
-  const ReducedScene reduced(draw("cloth", {{"nodes", 130}}));
+  const Model reduced(draw("cloth", {{"nodes", 130}}));
   BOOST_TEST(has(reduced, Reduction::mirror));
 }
 

@@ -14,7 +14,7 @@
 namespace qddot {
 namespace {
 
-void find_fastest(Explanation& explanation, const ReducedScene& all) {
+void find_fastest(Explanation& explanation, const Model& all) {
   try {
     const State& start = all.initial();
     const NaturalModes lowest = lowest_modes(all.system(), start.q, 1);
@@ -98,14 +98,13 @@ std::string left_out_sentence(const Explanation& e) {
 
 }  // namespace
 
-Explanation explain(const Scene& scene, const ReducedScene& reduced,
-                    const ExplanationLimits& limits) {
-  const System& system = reduced.system();
-  const Vec& q = reduced.initial().q;
+Explanation explain(const Scene& scene, const Model& model, const ExplanationLimits& limits) {
+  const System& system = model.system();
+  const Vec& q = model.initial().q;
   Explanation e;
   e.drawn_unknowns = scene.dimension * std::ssize(scene.nodes);
   e.unknowns = system.size();
-  e.findings = reduced.findings();
+  e.findings = model.findings();
   e.stiffness_is_constant = system.stiffness_is_constant();
   e.stiff_springs =
       static_cast<std::size_t>(std::ranges::count_if(scene.springs, [&](const Spring& spring) {
@@ -116,7 +115,7 @@ Explanation explain(const Scene& scene, const ReducedScene& reduced,
                                                      : std::numeric_limits<double>::quiet_NaN();
   e.is_examined = e.drawn_unknowns <= limits.examined;
   if (!e.is_examined || e.unknowns == 0) return e;
-  const ReducedScene all(scene, Reductions::all_directions());
+  const Model all(scene, Reductions::all_directions());
   try {
     const CurvatureSigns signs = curvature_signs(all.system(), all.initial().q);
     e.unstable = signs.negative;

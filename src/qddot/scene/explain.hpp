@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot {
@@ -37,10 +37,9 @@ struct ExplanationLimits {
 // Limits for a tenth of a second: for sidecars, which are written beside every run.
 inline constexpr ExplanationLimits at_a_glance{6000, 6000};
 
-// Explains `scene` as it starts, and `reduced`. Throws nothing for any content of a scene, because
+// Explains `scene` as it starts, and `model`. Throws nothing for any content of a scene, because
 // each sidecar needs it.
-Explanation explain(const Scene& scene, const ReducedScene& reduced,
-                    const ExplanationLimits& limits = {});
+Explanation explain(const Scene& scene, const Model& model, const ExplanationLimits& limits = {});
 
 // The explanation in some lines, each ended by a line feed.
 std::string explanation_in_words(const Explanation& explanation, const Scene& scene);

@@ -17,7 +17,7 @@ double diagonal(const std::vector<Node>& nodes) {
 
 }  // namespace
 
-Equilibrium equilibrium_of(const ReducedScene& scene) {
+Equilibrium equilibrium_of(const Model& scene) {
   const State& start = scene.initial();
   const std::vector<Node> drawn = scene.expand(start);
   Equilibrium rest = find_equilibrium(scene.system(), start.q, diagonal(drawn));
@@ -35,9 +35,9 @@ Equilibrium equilibrium_of(const ReducedScene& scene) {
 }
 
 Scene settled(const Scene& scene, const std::string& source) {
-  const ReducedScene reduced(scene, Reductions::all_directions());
-  const Equilibrium rest = equilibrium_of(reduced);
-  const std::vector<Node> nodes = reduced.expand({0, rest.q, reduced.initial().v});
+  const Model model(scene, Reductions::all_directions());
+  const Equilibrium rest = equilibrium_of(model);
+  const std::vector<Node> nodes = model.expand({0, rest.q, model.initial().v});
   if (rest.outcome != Equilibrium::Outcome::reached) {
     throw InvalidInput(fmt::format("{}: {}", source, rest.message));
   }

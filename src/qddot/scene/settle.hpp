@@ -3,7 +3,7 @@
 #include <string>
 
 #include "qddot/analysis/equilibrium.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot {
@@ -12,7 +12,7 @@ namespace qddot {
 // the scene is the diagonal of the box around its nodes. A failure's sentence names the node that
 // moved farthest, which belongs to the part that falls. No more than Reductions::all_directions()
 // may have reduced the scene: rest may lie where a reduced motion never comes.
-Equilibrium equilibrium_of(const ReducedScene& scene);
+Equilibrium equilibrium_of(const Model& scene);
 
 // The scene with its nodes at that equilibrium and its velocities as drawn; it no longer asks to
 // start there. Throws InvalidInput if there is no equilibrium or none is reached. The sentence

@@ -78,7 +78,7 @@ void try_sundials(Search& search, double accuracy, double seconds) {
   }
 }
 
-Advices of_nothing(const ReducedScene& model, double until, const std::vector<double>& accuracies,
+Advices of_nothing(const Model& model, double until, const std::vector<double>& accuracies,
                    AccuracyOf of) {
   Advices all{.largest_stable_step = infinity, .horizon = infinity};
   for (const double accuracy : accuracies) {
@@ -97,7 +97,7 @@ double Advice::margin() const {
   return std::max(1.0, runner_up->seconds / take->seconds);
 }
 
-Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
+Advices advise(const Model& model, double until, const std::vector<double>& accuracies,
                AccuracyOf of, const Scene* drawn) {
   const auto begin = clock_now();
   for (const double accuracy : accuracies) require_accuracy(accuracy);
@@ -141,7 +141,7 @@ Advices advise(const ReducedScene& model, double until, const std::vector<double
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
                AccuracyOf of) {
   const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
-  return advise(ReducedScene(start), until, accuracies, of, &start);
+  return advise(Model(start), until, accuracies, of, &start);
 }
 
 }  // namespace qddot::inline measure

@@ -42,7 +42,7 @@ struct Advices {
 // Finds the method that reaches each accuracy in the least time. An accuracy is a relative error:
 // of the positions at `until` [s], or as `of` says. All runs that it names were made and judged, as
 // in solve(). `drawn` is as there. Throws as solve() does.
-Advices advise(const ReducedScene& model, double until, const std::vector<double>& accuracies,
+Advices advise(const Model& model, double until, const std::vector<double>& accuracies,
                AccuracyOf of = AccuracyOf::positions, const Scene* drawn = nullptr);
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
                AccuracyOf of = AccuracyOf::positions);

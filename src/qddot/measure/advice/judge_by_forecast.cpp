@@ -16,7 +16,7 @@ namespace {
 constexpr double forces_a_bound = 17;  // the measured cost of frequency_bound
 
 // The factor by which w_max grows over the path, from the growth of its bound at some places.
-double growth_of_frequency(const ReducedScene& model, const std::vector<State>& path, double bound,
+double growth_of_frequency(const Model& model, const std::vector<State>& path, double bound,
                            std::size_t places) {
   if (model.system().stiffness_is_constant() || !(bound > 0)) return 1;
   double most = bound;

@@ -13,7 +13,7 @@ constexpr int burst_steps = OwnFrequencies::forces_a_burst;
 constexpr double burst_h_omega = 0.5;
 
 // Positions at the start and after each step of a burst; fewer if the burst failed.
-std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
+std::vector<Vec> burst(const Model& model, const State& from, double h) {
   const auto integrator = make_integrator(*find_method("verlet"), model.system(), {.step_size = h});
   State state{0, from.q, from.v};
   std::vector<Vec> q{state.q};
@@ -25,7 +25,7 @@ std::vector<Vec> burst(const ReducedScene& model, const State& from, double h) {
 
 // Adds the squares of the k-th differences of bursts along the path. Returns the number of bursts
 // that reached their end.
-int add_bursts(const ReducedScene& model, const std::vector<State>& path, double h, int bursts,
+int add_bursts(const Model& model, const std::vector<State>& path, double h, int bursts,
                std::array<double, OwnFrequencies::highest_order + 2>& squares) {
   int taken = 0;
   for (int i = 0; i < bursts; ++i) {
@@ -66,8 +66,8 @@ double OwnFrequencies::at(int order) const {
   return of_order[static_cast<std::size_t>(std::clamp(even, 1, highest_order))];
 }
 
-OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
-                               double w_max, int bursts) {
+OwnFrequencies own_frequencies(const Model& model, const std::vector<State>& path, double w_max,
+                               int bursts) {
   // A burst fails if forces change little at the start of a motion but much later. It is then
   // repeated with shorter steps.
   constexpr int most_attempts = 8;

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -27,7 +27,7 @@ struct OwnFrequencies {
 // Estimates the frequencies from `bursts` short bursts of Verlet's method, each of twelve steps at
 // h w_max = 1/2. They begin at the start and at some states of `path`; p-th differences of
 // positions give the derivatives. `w_max`: the largest frequency [rad/s].
-OwnFrequencies own_frequencies(const ReducedScene& model, const std::vector<State>& path,
-                               double w_max, int bursts);
+OwnFrequencies own_frequencies(const Model& model, const std::vector<State>& path, double w_max,
+                               int bursts);
 
 }  // namespace qddot::inline measure

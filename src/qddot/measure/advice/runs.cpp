@@ -23,8 +23,8 @@ Rules with_few_looks(Rules rules, double steps, double work_of_force) {
 
 }  // namespace
 
-Runs::Runs(const ReducedScene& model, double until, AccuracyOf of, double seconds,
-           const Scene* drawn, const Rules& rules)
+Runs::Runs(const Model& model, double until, AccuracyOf of, double seconds, const Scene* drawn,
+           const Rules& rules)
     : limit_(seconds),
       bound_of_w_(frequency_bound(model.system(), model.initial().q)),
       steps_of_verlet_(std::isfinite(bound_of_w_) ? std::max(1.0, until * bound_of_w_ / 2) : 1),

@@ -13,7 +13,7 @@ namespace qddot::inline measure {
 class Runs {
  public:
   // As Stage. No run begins after `seconds`.
-  Runs(const ReducedScene& model, double until, AccuracyOf of, double seconds, const Scene* drawn,
+  Runs(const Model& model, double until, AccuracyOf of, double seconds, const Scene* drawn,
        const Rules& rules);
 
   // Makes a run.

@@ -5,8 +5,8 @@
 
 namespace qddot::inline measure {
 
-Search::Search(const ReducedScene& model, double until, AccuracyOf of, double seconds,
-               const Scene* drawn, const Rules& rules)
+Search::Search(const Model& model, double until, AccuracyOf of, double seconds, const Scene* drawn,
+               const Rules& rules)
     : model_(model),
       system_(model.system()),
       until_(until),

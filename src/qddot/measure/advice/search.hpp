@@ -27,7 +27,7 @@ class Search {
  public:
   // Borrows the model, which must have unknowns and K, and the scene that it is the reduction of,
   // if given. No run begins after `seconds`.
-  Search(const ReducedScene& model, double until, AccuracyOf of, double seconds,
+  Search(const Model& model, double until, AccuracyOf of, double seconds,
          const Scene* drawn = nullptr, const Rules& rules = {});
 
   // Makes runs until the error of one is known to be at most `accuracy`; nullptr if that fails.
@@ -75,7 +75,7 @@ class Search {
   std::optional<Candidate> first_of_method(const Trial& answer, double fewest, double accuracy);
   const Trial* race(const Trial* answer, double accuracy);
 
-  const ReducedScene& model_;
+  const Model& model_;
   const System& system_;
   double until_;
   Runs runs_;

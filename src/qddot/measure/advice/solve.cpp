@@ -19,7 +19,7 @@
 namespace qddot::inline measure {
 namespace {
 
-void fill(Answer& answer, const Search& search, const Trial& trial, const ReducedScene& model) {
+void fill(Answer& answer, const Search& search, const Trial& trial, const Model& model) {
   answer.method = trial.method;
   answer.value = trial.value;
   answer.summary = trial.summary;
@@ -49,7 +49,7 @@ const Trial* last_of(const Search& search) {
 
 // The answer for a scene that rests or moves in closed form. It has rounding errors only; these are
 // larger beside a motion that is small beside its coordinates.
-Answer of_nothing(const ReducedScene& model, double until, const Wanted& wanted) {
+Answer of_nothing(const Model& model, double until, const Wanted& wanted) {
   Answer answer;
   const auto fits = [&](const Method& method) { return applies_to(method, model.system()); };
   const auto is_exact = [&](const Method& method) { return method.order == 0 && fits(method); };
@@ -103,7 +103,7 @@ void require_accuracy(double accuracy, const std::string& said) {
                   said, accuracy));
 }
 
-Answer solve(const ReducedScene& model, double until, const Wanted& wanted, const Scene* drawn) {
+Answer solve(const Model& model, double until, const Wanted& wanted, const Scene* drawn) {
   const auto begin = clock_now();
   require_accuracy(wanted.accuracy);
   if (!(until > 0) || !std::isfinite(until))
@@ -152,7 +152,7 @@ Answer solve(const ReducedScene& model, double until, const Wanted& wanted, cons
 
 Answer solve(const Scene& scene, double until, const Wanted& wanted) {
   const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
-  return solve(ReducedScene(start), until, wanted, &start);
+  return solve(Model(start), until, wanted, &start);
 }
 
 Answer solve(const Scene& scene, double until, double accuracy) {

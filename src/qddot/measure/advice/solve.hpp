@@ -74,8 +74,7 @@ struct Answer {
 // std::invalid_argument for an accuracy or a time out of range, or a system without K.
 // `drawn`: the scene that the model is the reduction of, if it may leave the symmetry of its
 // reductions by rounding.
-Answer solve(const ReducedScene& model, double until, const Wanted& wanted,
-             const Scene* drawn = nullptr);
+Answer solve(const Model& model, double until, const Wanted& wanted, const Scene* drawn = nullptr);
 // The same for a scene, with all of its reductions; throws InvalidInput if the scene is wrong.
 Answer solve(const Scene& scene, double until, const Wanted& wanted);
 Answer solve(const Scene& scene, double until, double accuracy);

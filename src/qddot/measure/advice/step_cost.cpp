@@ -33,7 +33,7 @@ double forces_a_step(const Method& method) {
   return place->second;
 }
 
-double seconds_of_force(const ReducedScene& model) {
+double seconds_of_force(const Model& model) {
   Vec f(model.system().size());
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {

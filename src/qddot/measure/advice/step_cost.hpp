@@ -1,7 +1,7 @@
 #pragma once
 
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -10,6 +10,6 @@ namespace qddot::inline measure {
 double forces_a_step(const Method& method);
 
 // The time [s] of one evaluation of f at the start: the least of three.
-double seconds_of_force(const ReducedScene& model);
+double seconds_of_force(const Model& model);
 
 }  // namespace qddot::inline measure

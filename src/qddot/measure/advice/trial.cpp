@@ -30,7 +30,7 @@ class Shift {
 
 }  // namespace
 
-Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
+Stage::Stage(const Model& model, double until, AccuracyOf of, const Scene* drawn,
              const Rules& rules)
     : model_(model),
       until_(until),
@@ -41,8 +41,8 @@ Stage::Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene
           until, static_cast<std::int64_t>(of == AccuracyOf::positions ? rules.looks
                                                                        : rules.looks_at_a_path))) {}
 
-Trial Stage::run_from(const ReducedScene& model, const State& start, const Method& method,
-                      double value, const Limits& limits, const See& see_step) const {
+Trial Stage::run_from(const Model& model, const State& start, const Method& method, double value,
+                      const Limits& limits, const See& see_step) const {
   Trial trial{.method = &method,
               .value = value,
               .only_end = limits.only_end && of_ == AccuracyOf::positions};
@@ -196,8 +196,7 @@ std::vector<double> Stage::distances_as_drawn(const Trial& trial, const Method& 
     }
   }
   for (Spring& spring : scene.springs) shift(spring.law.rest_length, spring.law.rest_length);
-  const ReducedScene drawn(scene,
-                           Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  const Model drawn(scene, Reductions().without(Reduction::dimension).without(Reduction::mirror));
   if (!applies_to(method, drawn.system())) return all;
   const Trial pushed = run_from(drawn, drawn.initial(), method, value, limits);
   if (!pushed.reached_end()) return all;

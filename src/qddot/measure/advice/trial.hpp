@@ -57,8 +57,7 @@ struct Limits {
 class Stage {
  public:
   // Borrows the model and, if given, the scene that it is the reduction of.
-  Stage(const ReducedScene& model, double until, AccuracyOf of, const Scene* drawn,
-        const Rules& rules);
+  Stage(const Model& model, double until, AccuracyOf of, const Scene* drawn, const Rules& rules);
 
   // Looks also within the steps of a run, at random times in each of some of them: short steps are
   // where a motion is fast, and where errors on the way may be largest.
@@ -107,7 +106,7 @@ class Stage {
   // the energy's own rounding: the largest at its looks.
   double energy_rounding(const Trial& trial) const;
 
-  const ReducedScene& model() const { return model_; }
+  const Model& model() const { return model_; }
   double until() const { return until_; }
   AccuracyOf of() const { return of_; }
   const std::vector<double>& times() const { return times_; }
@@ -119,10 +118,10 @@ class Stage {
   double energy_scale() const;
   using See = std::function<void(const State&)>;
   // `see_step`, if set, takes the place of a look at the energy after each step.
-  Trial run_from(const ReducedScene& model, const State& start, const Method& method, double value,
+  Trial run_from(const Model& model, const State& start, const Method& method, double value,
                  const Limits& limits, const See& see_step = {}) const;
 
-  const ReducedScene& model_;
+  const Model& model_;
   double until_;
   AccuracyOf of_;
   const Scene* drawn_;

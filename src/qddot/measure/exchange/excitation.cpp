@@ -36,7 +36,7 @@ double stiff_frequency(const System& system, const Vec& q) {
 
 }  // namespace
 
-Excitation excitation_of(Scene start, ReducedScene scene, double until, const std::string& source) {
+Excitation excitation_of(Scene start, Model scene, double until, const std::string& source) {
   Excitation excitation{.start = std::move(start), .scene = std::move(scene), .until = until};
   const State& initial = excitation.scene.initial();
   excitation.every = until / 1000;

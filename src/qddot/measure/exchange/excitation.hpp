@@ -6,7 +6,7 @@
 
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/exchange/energy_exchange.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::inline measure {
@@ -14,7 +14,7 @@ namespace qddot::inline measure {
 // A scene whose stiff springs (Scene::stiff_above) start with energy, which they then exchange.
 struct Excitation {
   Scene start;
-  ReducedScene scene;
+  Model scene;
   double until = 0, every = 0;  // [s]; `every`: mean time between looks
   double omega = 0;             // the highest frequency of the stiff springs alone [rad/s]
   double window = 0;            // [s], of running means: 40 periods, at most until/4
@@ -27,7 +27,7 @@ std::vector<double> looks(const Excitation& excitation, double h);
 
 // Measures the start of a scene. Throws InvalidInput, in a sentence that starts with `source`, if
 // no stiff spring moves or none has energy.
-Excitation excitation_of(Scene start, ReducedScene scene, double until, const std::string& source);
+Excitation excitation_of(Scene start, Model scene, double until, const std::string& source);
 
 // A run of one method: the energies of the stiff springs, and the largest relative errors of their
 // sum and of the energy H.

@@ -33,11 +33,11 @@ std::vector<std::size_t> all_of(const std::vector<Node>& nodes) {
 }
 
 // The nodes without the common fall of parts; if nothing is integrated, as they move.
-std::vector<Node> measured(const ReducedScene& scene, const State& state) {
+std::vector<Node> measured(const Model& scene, const State& state) {
   return scene.system().size() > 0 ? scene.expand_beside_falls(state) : scene.expand(state);
 }
 
-std::vector<PartScale> parts_of(const ReducedScene& scene, const std::vector<Node>& start) {
+std::vector<PartScale> parts_of(const Model& scene, const std::vector<Node>& start) {
   std::vector<PartScale> parts;
   for (auto& nodes : scene.nodes_by_part()) {
     PartScale& part = parts.emplace_back(PartScale{.nodes = std::move(nodes)});
@@ -78,7 +78,7 @@ double Scales::speed_of(const PartScale& part) const {
   return part.is_at_rest() ? speed : part.speed;
 }
 
-void extend(Scales& scales, const ReducedScene& scene, const State& state) {
+void extend(Scales& scales, const Model& scene, const State& state) {
   if (scales.parts.empty()) scales.parts = parts_of(scene, measured(scene, scene.initial()));
   std::vector<double> displacements = scene.largest_by_part(state.q - scene.initial().q),
                       speeds = scene.largest_by_part(state.v);
@@ -108,7 +108,7 @@ double position_error(const std::vector<Node>& nodes, const std::vector<Node>& r
                        &Scales::displacement_of);
 }
 
-double position_error(const ReducedScene& scene, const State& state, const State& reference,
+double position_error(const Model& scene, const State& state, const State& reference,
                       const Scales& scales) {
   const std::vector<double> differences = scene.largest_by_part(state.q - reference.q);
   if (differences.size() != scales.parts.size() || differences.empty())
@@ -124,8 +124,8 @@ double velocity_error(const std::vector<Node>& nodes, const std::vector<Node>& r
   return largest_error(nodes, reference, &Node::velocity, scales, scales.speed, &Scales::speed_of);
 }
 
-Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
-                      double energy, const Scales& scales) {
+Errors errors_between(const Model& scene, const State& state, const State& reference, double energy,
+                      const Scales& scales) {
   const auto nodes = measured(scene, state), expected = measured(scene, reference);
   return {position_error(nodes, expected, scales), velocity_error(nodes, expected, scales),
           divided(std::abs(scene.energy(state) - energy), scales.kinetic)};

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -47,14 +47,14 @@ struct Errors {
 constexpr Errors no_error = {.position = 0, .velocity = 0, .energy = 0};
 
 // Extends the scales by one more state of the motion from `initial`.
-void extend(Scales& scales, const ReducedScene& scene, const State& state);
+void extend(Scales& scales, const Model& scene, const State& state);
 
 // `energy`: E_ref [J].
-Errors errors_between(const ReducedScene& scene, const State& state, const State& reference,
-                      double energy, const Scales& scales);
+Errors errors_between(const Model& scene, const State& state, const State& reference, double energy,
+                      const Scales& scales);
 
 // The position error alone, by scales of the same reduction of the scene.
-double position_error(const ReducedScene& scene, const State& state, const State& reference,
+double position_error(const Model& scene, const State& state, const State& reference,
                       const Scales& scales);
 // The position error and the velocity error alone, over all nodes of the scene.
 double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,

@@ -8,7 +8,7 @@
 
 namespace qddot::inline measure {
 
-std::optional<ModalShares> ModalShares::at_equilibrium(const ReducedScene& scene) try {
+std::optional<ModalShares> ModalShares::at_equilibrium(const Model& scene) try {
   // Only dimensions of the motion count: other modes have no kinetic energy.
   const Equilibrium rest = equilibrium_of(scene);
   if (rest.outcome != Equilibrium::Outcome::reached) return {};

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -17,7 +17,7 @@ class ModalShares {
   static constexpr Index most_modes = 32;
 
   // Empty if no equilibrium is reached from the start.
-  static std::optional<ModalShares> at_equilibrium(const ReducedScene& scene);
+  static std::optional<ModalShares> at_equilibrium(const Model& scene);
 
   // T_j [J]; the last entry is the sum over all higher modes. There are up to most_modes + 1
   // entries.

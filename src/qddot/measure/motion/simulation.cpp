@@ -31,27 +31,25 @@ const Method& method(std::string_view name) {
                                           fmt::join(all, ", ")));
 }
 
-ReducedScene reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
+Model reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
   const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
   // Springs in series equal one spring in tension only. Methods that accept massless nodes run
   // without this reduction.
-  return ReducedScene(start, method.is(Trait::accepts_massless)
-                                 ? reductions.without(Reduction::massless)
-                                 : reductions);
+  return Model(start, method.is(Trait::accepts_massless) ? reductions.without(Reduction::massless)
+                                                         : reductions);
 }
 
 Simulation::Simulation(const Scene& scene, const Method& method, const Options& options,
                        const Reductions& reductions)
-    : Simulation(std::make_shared<const ReducedScene>(reduced_for(method, scene, reductions)),
-                 method, options) {}
+    : Simulation(std::make_shared<const Model>(reduced_for(method, scene, reductions)), method,
+                 options) {}
 
 Simulation::Simulation(std::shared_ptr<const System> system, State start, int dimension,
                        const Method& method, const Options& options)
-    : Simulation(
-          std::make_shared<const ReducedScene>(std::move(system), std::move(start), dimension),
-          method, options) {}
+    : Simulation(std::make_shared<const Model>(std::move(system), std::move(start), dimension),
+                 method, options) {}
 
-Simulation::Simulation(std::shared_ptr<const ReducedScene> model, const Method& method,
+Simulation::Simulation(std::shared_ptr<const Model> model, const Method& method,
                        const Options& options)
     : model_(std::move(model)),
       options_(measure::with_tolerance_scales(options, *model_)),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot {
 
@@ -16,8 +16,7 @@ const Method& method(std::string_view name);
 // The smallest system of a scene for a method, as in the programs. All of `reductions` that the
 // method can use are applied. The scene is at its equilibrium if it starts there. Throws
 // InvalidInput if the scene is wrong or has no equilibrium.
-ReducedScene reduced_for(const Method& method, const Scene& scene,
-                         const Reductions& reductions = {});
+Model reduced_for(const Method& method, const Scene& scene, const Reductions& reductions = {});
 
 // The motion of a scene, or of a system of the caller's own, by one method. As in the programs, it
 // uses the scene's smallest model and its sizes for absolute tolerances (with_tolerance_scales).
@@ -28,8 +27,7 @@ class Simulation {
   Simulation(const Scene& scene, const Method& method, const Options& options,
              const Reductions& reductions = {});
   // Runs a model that others may share.
-  Simulation(std::shared_ptr<const ReducedScene> model, const Method& method,
-             const Options& options);
+  Simulation(std::shared_ptr<const Model> model, const Method& method, const Options& options);
   // Runs a system of the caller's own; unknowns are ordered by nodes, `dimension` for each.
   Simulation(std::shared_ptr<const System> system, State start, int dimension, const Method& method,
              const Options& options);
@@ -42,14 +40,14 @@ class Simulation {
   const State& state() const { return state_; }
   std::vector<Node> nodes() const { return model_->expand(state_); }
   double energy() const { return model_->energy(state_); }
-  const ReducedScene& model() const { return *model_; }
+  const Model& model() const { return *model_; }
   // The time [s] that advance() has reached, while it runs on another thread.
   double reached() const { return integrator_->reached(); }
   // The options that the method was given, tolerance scales included.
   const Options& options() const { return options_; }
 
  private:
-  std::shared_ptr<const ReducedScene> model_;
+  std::shared_ptr<const Model> model_;
   Options options_;
   std::unique_ptr<Integrator> integrator_;
   State state_;

@@ -33,7 +33,7 @@ double largest_acceleration(const System& system, const Vec& q) {
 
 }  // namespace
 
-Options with_tolerance_scales(Options options, const ReducedScene& scene) {
+Options with_tolerance_scales(Options options, const Model& scene) {
   const auto nodes = scene.expand_beside_falls(scene.initial());
   const double length = extent(nodes);
   options.length = length > 0 ? length : 1;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "qddot/integrators/integrator.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -11,6 +11,6 @@ namespace qddot::inline measure {
 // other is sqrt(a L), with a the largest acceleration at the start; it is w L for w^2 = a/L. The
 // second is the speed that a node can gain across the scene (under gravity alone, sqrt(g L)). L is
 // 1 m for a scene without extent; the speed is L/s for a scene at rest in balance.
-Options with_tolerance_scales(Options options, const ReducedScene& scene);
+Options with_tolerance_scales(Options options, const Model& scene);
 
 }  // namespace qddot::inline measure

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 

@@ -30,7 +30,7 @@ struct Way {
 };
 
 // A run with fixed steps: h w <= coarsest at the start, halved with each level.
-std::optional<Solution> resolved(const ReducedScene& scene, const char* name, double until,
+std::optional<Solution> resolved(const Model& scene, const char* name, double until,
                                  double coarsest, int level, double seconds) {
   const double w = frequency_bound(scene.system(), scene.initial().q);
   const double least = std::max(16.0, std::ceil(until * w / coarsest * std::exp2(level)));
@@ -42,7 +42,7 @@ std::optional<Solution> resolved(const ReducedScene& scene, const char* name, do
   return solution;
 }
 
-std::optional<Solution> ida(const ReducedScene& scene, double until, double rtol, double seconds) {
+std::optional<Solution> ida(const Model& scene, double until, double rtol, double seconds) {
   if (rtol < least_rtol) return {};
   auto solution = seen_run(scene, *find_method("ida"), with_tolerance_scales({.rtol = rtol}, scene),
                            scene.initial(), {until}, seconds);
@@ -52,7 +52,7 @@ std::optional<Solution> ida(const ReducedScene& scene, double until, double rtol
 
 }  // namespace
 
-Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds) {
+Reference agreed_reference(const Model& scene, double until, double needed, double seconds) {
   const auto start = clock_now();
   Scales scales;
   const auto explicitly = [&](const char* name, double coarsest) {

@@ -22,7 +22,7 @@ constexpr Index largest_modal_size = 2000;  // a dense eigenproblem of a few sec
 // Throws NoReference if no step resolves the motion, or if `steps` steps of order 8 would take more
 // than twice `seconds`, estimated from a few steps. Calls `expect` if the reference is likely to
 // take all its time. `allowed`: that of the whole reference [s].
-void require_affordable(const ReducedScene& scene, double until, double steps, double seconds,
+void require_affordable(const Model& scene, double until, double steps, double seconds,
                         double allowed, const Expect& expect) {
   constexpr double tried = 16, refinements = 8;
   State state = scene.initial();
@@ -53,8 +53,7 @@ void require_affordable(const ReducedScene& scene, double until, double steps, d
 class Composed {
  public:
   // In about `seconds`, of those that are allowed for the whole reference.
-  Composed(const ReducedScene& scene, double until, double seconds, double allowed,
-           const Expect& expect)
+  Composed(const Model& scene, double until, double seconds, double allowed, const Expect& expect)
       : scene_(scene), until_(until), longest_rounding_(allowed) {
     // The steps resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
     const double bound = frequency_bound(scene.system(), scene.initial().q);
@@ -80,14 +79,13 @@ class Composed {
     return *rounding_;
   }
 
-  const ReducedScene& scene_;
+  const Model& scene_;
   double until_, longest_rounding_;
   Solution finest_;
   std::optional<RoundingRun> rounding_;
 };
 
-Solution best_fehlberg(const ReducedScene& scene, double until, const Composed& composed,
-                       double seconds) {
+Solution best_fehlberg(const Model& scene, double until, const Composed& composed, double seconds) {
   return refined(
       scene, seconds,
       [&](int level) -> std::optional<Solution> {
@@ -98,7 +96,7 @@ Solution best_fehlberg(const ReducedScene& scene, double until, const Composed& 
       [&](const Solution&, double change) { return composed.rounding().explains(change); });
 }
 
-bool is_reduced_by_symmetry(const ReducedScene& scene) {
+bool is_reduced_by_symmetry(const Model& scene) {
   return std::ranges::any_of(scene.findings(), [](const Finding& finding) {
     return finding.reduction == Reduction::dimension || finding.reduction == Reduction::mirror;
   });
@@ -106,8 +104,8 @@ bool is_reduced_by_symmetry(const ReducedScene& scene) {
 
 }  // namespace
 
-Reference make_reference(const ReducedScene& scene, double until, double seconds,
-                         const Scene* start, const Expect& expect) {
+Reference make_reference(const Model& scene, double until, double seconds, const Scene* start,
+                         const Expect& expect) {
   const auto begin = clock_now();
   const Composed composed(scene, until, 0.6 * seconds, seconds, expect);
   const Solution& finest = composed.finest();

@@ -88,7 +88,7 @@ using Expect = std::function<void(double seconds)>;
 // that `scene` is the reduction of. If it is given, and its dimension or a mirror was reduced, the
 // effect of a push is measured: a run of all drawn nodes, in up to `seconds` more. Throws
 // NoReference if either method never reaches the end.
-Reference make_reference(const ReducedScene& scene, double until, double seconds,
+Reference make_reference(const Model& scene, double until, double seconds,
                          const Scene* start = nullptr, const Expect& expect = {});
 
 // Makes a reference with a position error of at most `needed`, and no better than necessary, in
@@ -100,7 +100,7 @@ Reference make_reference(const ReducedScene& scene, double until, double seconds
 // difference of the nearest two. Agreement within one kind proves nothing: implicit methods may
 // agree in damping the same vibrations. Rounding is not measured. Throws NoReference if no method
 // of a kind reaches the end.
-Reference agreed_reference(const ReducedScene& scene, double until, double needed, double seconds);
+Reference agreed_reference(const Model& scene, double until, double needed, double seconds);
 
 // A sentence that names the scales of errors against the reference, with their values.
 std::string what_divides(const Reference& reference);

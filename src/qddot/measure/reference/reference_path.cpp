@@ -12,7 +12,7 @@ namespace {
 
 // The states at these times by Kahan and Li's composition with steps of h [s]. The run ends with
 // the reference, so that its steps are those of the reference.
-std::vector<State> composed_path(const ReducedScene& scene, double h, double until,
+std::vector<State> composed_path(const Model& scene, double h, double until,
                                  const std::vector<double>& times, double seconds) {
   std::vector<State> states;
   const Observer each{times, [&](const State& state) { states.push_back(state); }};
@@ -33,7 +33,7 @@ std::vector<State> composed_path(const ReducedScene& scene, double h, double unt
 
 }  // namespace
 
-ReferencePath path_of(const ReducedScene& scene, const Reference& reference,
+ReferencePath path_of(const Model& scene, const Reference& reference,
                       const std::vector<double>& times, double seconds) {
   const double until = reference.end.t, h = reference.step_size;
   ReferencePath path{.states = composed_path(scene, h, until, times, seconds), .certified = {}};

@@ -18,7 +18,7 @@ struct ReferencePath {
 // The motion of a reference that make_reference() made of the scene, at `times` [s], ascending from
 // 0 to its end. It takes about as long as the reference took. Throws NoReference if that takes more
 // than `seconds`.
-ReferencePath path_of(const ReducedScene& scene, const Reference& reference,
+ReferencePath path_of(const Model& scene, const Reference& reference,
                       const std::vector<double>& times, double seconds);
 
 }  // namespace qddot::inline measure

@@ -14,7 +14,7 @@ double reach(const PartScale& part) { return std::max(part.extent, part.displace
 
 // A vector over the unknowns: each entry is `of` the part that the unknown belongs to.
 template <class Of>
-Vec by_unknown(const ReducedScene& scene, const Scales& scales, const Of& of) {
+Vec by_unknown(const Model& scene, const Scales& scales, const Of& of) {
   Vec all = Vec::Zero(scene.system().size());
   Index at = 0;
   std::size_t part = 0;
@@ -27,7 +27,7 @@ Vec by_unknown(const ReducedScene& scene, const Scales& scales, const Of& of) {
 
 }  // namespace
 
-State displaced_start(const ReducedScene& scene, const Scales& scales, double part) {
+State displaced_start(const Model& scene, const Scales& scales, double part) {
   State start = scene.initial();
   const Vec lengths = by_unknown(scene, scales, reach);
   const Vec speeds = by_unknown(scene, scales, [](const PartScale& own) { return own.speed; });
@@ -38,8 +38,7 @@ State displaced_start(const ReducedScene& scene, const Scales& scales, double pa
   return start;
 }
 
-RoundingRun::RoundingRun(const ReducedScene& scene, const Solution& composed, double until,
-                         double seconds)
+RoundingRun::RoundingRun(const Model& scene, const Solution& composed, double until, double seconds)
     : scene_(scene),
       path_(composed.path),
       scales_(composed.scales),
@@ -85,11 +84,10 @@ void RoundingRun::tell(Reference& reference) const {
   reference.lyapunov = parting.lyapunov;
 }
 
-std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedScene& scene,
+std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const Model& scene,
                                              const Solution& composed, double until,
                                              double seconds) {
-  const ReducedScene drawn(start,
-                           Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  const Model drawn(start, Reductions().without(Reduction::dimension).without(Reduction::mirror));
   Scales scales;
   extend(scales, drawn, drawn.initial());
   // A node that starts at the origin has no coordinate to round; its displacement is rounded
@@ -112,7 +110,7 @@ std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedSc
   return OutOfSymmetry{differences.back(), parting.horizon, parting.lyapunov};
 }
 
-void measure_shares(Reference& reference, const ReducedScene& scene, const Solution& composed,
+void measure_shares(Reference& reference, const Model& scene, const Solution& composed,
                     double until, double seconds) {
   const auto modes = ModalShares::at_equilibrium(scene);
   if (!modes) return;

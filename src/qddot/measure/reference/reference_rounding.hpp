@@ -7,14 +7,14 @@ namespace qddot::inline measure {
 // The start with each unknown changed at random. Positions change by up to `part` times the largest
 // coordinate or displacement of their part of the scene; velocities change by up to `part` times
 // its speed. The machine's epsilon as `part` makes that one rounding.
-State displaced_start(const ReducedScene& scene, const Scales& scales, double part);
+State displaced_start(const Model& scene, const Scales& scales, double part);
 
 // Repeats a composition from a start that is one rounding away, to an end time one rounding later.
 // Measures the effect on the end.
 class RoundingRun {
  public:
   // Takes `seconds` at most; if they are not enough, reached_end() is false and there is no effect.
-  RoundingRun(const ReducedScene& scene, const Solution& composed, double until, double seconds);
+  RoundingRun(const Model& scene, const Solution& composed, double until, double seconds);
 
   bool reached_end() const { return moved_.has_value(); }
   double knob() const { return knob_; }
@@ -29,7 +29,7 @@ class RoundingRun {
   void tell(Reference& reference) const;
 
  private:
-  const ReducedScene& scene_;
+  const Model& scene_;
   std::vector<State> path_;
   Scales scales_;
   double knob_, steps_;
@@ -42,7 +42,7 @@ class RoundingRun {
 // Compares the composition's path, computed with the reductions of `scene`, with a motion of all
 // nodes of `start`. That begins with a push by one rounding in all dimensions. Empty if it takes
 // longer than `seconds`.
-std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedScene& scene,
+std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const Model& scene,
                                              const Solution& composed, double until,
                                              double seconds);
 
@@ -50,7 +50,7 @@ std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const ReducedSc
 // Repeats the composition from a start that agrees to half as many digits. Differences grow
 // exponentially, so the two are apart after half the time. So the second half of the run has only
 // those properties in common that every such motion has.
-void measure_shares(Reference& reference, const ReducedScene& scene, const Solution& composed,
+void measure_shares(Reference& reference, const Model& scene, const Solution& composed,
                     double until, double seconds);
 
 }  // namespace qddot::inline measure

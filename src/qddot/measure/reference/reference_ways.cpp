@@ -70,9 +70,9 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
 
 }  // namespace
 
-std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
-                                 const Options& options, const State& initial,
-                                 const std::vector<double>& times, double seconds) {
+std::optional<Solution> seen_run(const Model& scene, const Method& method, const Options& options,
+                                 const State& initial, const std::vector<double>& times,
+                                 double seconds) {
   const auto integrator = make_integrator(method, scene.system(), options);
   Solution solution{.end = initial};
   const Deadline deadline(seconds);
@@ -90,7 +90,7 @@ std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method
   return solution;
 }
 
-std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
+std::optional<Solution> composition(const Model& scene, const State& initial, double until,
                                     double h, double seconds) {
   auto solution = seen_run(scene, *find_method("kahan_li8"), {.step_size = h}, initial,
                            random_step_times(h, until, most_looks), seconds);
@@ -100,7 +100,7 @@ std::optional<Solution> composition(const ReducedScene& scene, const State& init
   return solution;
 }
 
-std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
+std::optional<Solution> fehlberg(const Model& scene, double until, double tolerance,
                                  const Scales& scales, double seconds) {
   const System& system = scene.system();
   const auto parts = system.blocks();
@@ -126,7 +126,7 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
   return solution;
 }
 
-Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
+Reference joined(const Model& scene, const Solution& one, const Solution& other,
                  const Errors& rounding_effect) {
   const double energy = scene.energy(scene.initial());
   Errors certified = errors_between(scene, one.end, other.end, scene.energy(other.end), one.scales);

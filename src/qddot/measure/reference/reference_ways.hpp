@@ -23,18 +23,18 @@ struct Solution {
 // The motion from `initial` by a method with these options, to the last of `times` [s]. Its scales
 // are taken at all of them. Up to a hundred make its path, drawn at random so that they are not in
 // step with the motion; the end is one. Empty if it does not reach the end in `seconds`.
-std::optional<Solution> seen_run(const ReducedScene& scene, const Method& method,
-                                 const Options& options, const State& initial,
-                                 const std::vector<double>& times, double seconds);
+std::optional<Solution> seen_run(const Model& scene, const Method& method, const Options& options,
+                                 const State& initial, const std::vector<double>& times,
+                                 double seconds);
 
 // The motion by Kahan and Li's composition of order 8 with steps of h [s], with scales from each
 // step; of more than a million, from random ones.
-std::optional<Solution> composition(const ReducedScene& scene, const State& initial, double until,
+std::optional<Solution> composition(const Model& scene, const State& initial, double until,
                                     double h, double seconds);
 
 // The motion by Fehlberg 7(8), in the variables (q - q0) / displacement and v / speed, which are of
 // order one. Each part of the scene has its own scales and steps.
-std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double tolerance,
+std::optional<Solution> fehlberg(const Model& scene, double until, double tolerance,
                                  const Scales& scales, double seconds);
 
 // The reference whose end is that of `one`, certified by `other`.
@@ -46,7 +46,7 @@ std::optional<Solution> fehlberg(const ReducedScene& scene, double until, double
 // ends with independent errors of one size. The error of `one` exceeds twice each of them only if
 // all the others have nearly the same error: in its direction, within half of its size. The
 // rounding of the scene's own numbers is common to both; `rounding_effect` stands for it.
-Reference joined(const ReducedScene& scene, const Solution& one, const Solution& other,
+Reference joined(const Model& scene, const Solution& one, const Solution& other,
                  const Errors& rounding_effect = no_error);
 
 }  // namespace qddot::inline measure

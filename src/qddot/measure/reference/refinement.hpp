@@ -24,7 +24,7 @@ constexpr int most_lost_levels = 3;
 // times min(1, 2 r), with r the ratio of the last two. The reason: changes that shrink by r <= 1/2
 // each time add up to r / (1 - r) <= 2 r of the last.
 template <class Solve, class IsRounding>
-Solution refined(const ReducedScene& scene, double seconds, const Solve& solve,
+Solution refined(const Model& scene, double seconds, const Solve& solve,
                  const IsRounding& is_rounding) {
   const auto start = clock_now();
   std::optional<Solution> best;

@@ -52,7 +52,7 @@ class StabilityMargins {
   // `w_max` [rad/s]; 0 if it is not known.
   explicit StabilityMargins(double w_max) : w_max_(w_max) {}
   // With the largest frequency of the scene, which is computed when a point asks for it.
-  explicit StabilityMargins(const ReducedScene& scene) : scene_(&scene) {}
+  explicit StabilityMargins(const Model& scene) : scene_(&scene) {}
 
   // NaN for methods without fixed steps or without a limit, and if w_max is unknown.
   double of(const Point& point);
@@ -60,7 +60,7 @@ class StabilityMargins {
  private:
   double w_max();
 
-  const ReducedScene* scene_ = nullptr;
+  const Model* scene_ = nullptr;
   std::optional<double> w_max_;
 };
 

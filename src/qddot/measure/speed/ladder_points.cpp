@@ -19,7 +19,7 @@ constexpr int most_points = 60;
 // methods, beyond the stability limit of most, and half the run for implicit ones.
 class KnobValues {
  public:
-  KnobValues(const Method& method, const ReducedScene& scene, double until)
+  KnobValues(const Method& method, const Model& scene, double until)
       : method_(method), until_(until) {
     const double w = resolved_frequency(method, scene.system(), scene.initial().q);
     steps_ = method.is(Trait::implicit) ? 2 : std::max(1.0, std::ceil(until * w / 4));
@@ -110,7 +110,7 @@ std::vector<Rung> rungs(const std::vector<Point>& points, double until, const Re
 
 }  // namespace
 
-std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scene, double until,
+std::vector<Point> measure_ladder(const Method& method, const Model& scene, double until,
                                   const Reference& reference, const Effort& effort,
                                   const std::function<void(const Point&)>& report,
                                   const std::function<bool(const Point&)>& is_last) {

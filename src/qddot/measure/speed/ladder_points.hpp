@@ -20,7 +20,7 @@ namespace qddot::inline measure {
 // or by ten (tolerances). Fixed steps are denser near the stability limit of the whole run (see
 // ladder.hpp), for explicit methods and for implicit ones that blew up. `report` is called with
 // each point.
-std::vector<Point> measure_ladder(const Method& method, const ReducedScene& scene, double until,
+std::vector<Point> measure_ladder(const Method& method, const Model& scene, double until,
                                   const Reference& reference, const Effort& effort,
                                   const std::function<void(const Point&)>& report,
                                   const std::function<bool(const Point&)>& is_last = {});

@@ -23,7 +23,7 @@ constexpr double own_warm_up = 0.1;
 constexpr double longest_look = 60;
 
 // Measures the point.
-Point taken(const Method& method, double value, const ReducedScene& scene, double until,
+Point taken(const Method& method, double value, const Model& scene, double until,
             const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
   const Options options = options_for(method, value, scene, effort.options);
@@ -84,13 +84,12 @@ Point taken(const Method& method, double value, const ReducedScene& scene, doubl
 
 }  // namespace
 
-Options options_for(const Method& method, double value, const ReducedScene& scene,
-                    Options options) {
+Options options_for(const Method& method, double value, const Model& scene, Options options) {
   (method.knob == Knob::step_size ? options.step_size : options.rtol) = value;
   return with_tolerance_scales(options, scene);
 }
 
-Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
+Point measure_point(const Method& method, double value, const Model& scene, double until,
                     const Reference& reference, const Effort& effort) {
   const auto take = [&] { return taken(method, value, scene, until, reference, effort); };
   return effort.recall ? effort.recall(method, value, take) : take();

@@ -37,8 +37,7 @@ struct Effort {
 };
 
 // The options with the method's knob at `value` and the scene's tolerance scales.
-Options options_for(const Method& method, double value, const ReducedScene& scene,
-                    Options options = {});
+Options options_for(const Method& method, double value, const Model& scene, Options options = {});
 
 // Whether the times of the point's runs vary: the median is more than a quarter above the least, as
 // where other programs run beside it.
@@ -50,7 +49,7 @@ inline bool is_disturbed(const Point& point) {
 // then up to `repeats` times, or up to three times as often if it is disturbed. A first run of 0.1
 // s or more counts as timed. A repeat that fails makes the point a failure. Runs too short for the
 // clock are timed in batches. Single thread. Times are those of the clock in use.
-Point measure_point(const Method& method, double value, const ReducedScene& scene, double until,
+Point measure_point(const Method& method, double value, const Model& scene, double until,
                     const Reference& reference, const Effort& effort);
 
 }  // namespace qddot::inline measure

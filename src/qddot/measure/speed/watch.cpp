@@ -24,8 +24,7 @@ std::vector<double> looks(const Method& method, const Options& options, double u
 
 }  // namespace
 
-Watch::Watch(const Scene& start, const ReducedScene& scene, double until,
-             const Reference& reference)
+Watch::Watch(const Scene& start, const Model& scene, double until, const Reference& reference)
     : scene_(scene), until_(until), reference_(reference), momenta_(start) {
   if (reference.modal_shares.size() > 0) modes_ = ModalShares::at_equilibrium(scene);
 }

@@ -28,7 +28,7 @@ class Watch {
  public:
   static constexpr std::int64_t most_looks = 10'000;
 
-  Watch(const Scene& start, const ReducedScene& scene, double until, const Reference& reference);
+  Watch(const Scene& start, const Model& scene, double until, const Reference& reference);
 
   // Runs a method, which took `steps` steps before, once more and measures the run. Fixed steps
   // keep their size: looks are between whole steps, and at each if there are no more than looks.
@@ -38,7 +38,7 @@ class Watch {
                  double seconds) const;
 
  private:
-  const ReducedScene& scene_;
+  const Model& scene_;
   double until_;
   const Reference& reference_;
   Momenta momenta_;

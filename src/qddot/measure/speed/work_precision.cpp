@@ -13,7 +13,7 @@ namespace qddot::inline measure {
 namespace {
 
 // Throws std::invalid_argument if there is nothing to measure the methods on.
-void require_measurable(const ReducedScene& model, const std::vector<const Method*>& methods) {
+void require_measurable(const Model& model, const std::vector<const Method*>& methods) {
   const System& system = model.system();
   if (system.size() == 0 || system.has_massless()) {
     throw std::invalid_argument(
@@ -29,7 +29,7 @@ void require_measurable(const ReducedScene& model, const std::vector<const Metho
 
 }  // namespace
 
-WorkPrecision work_precision(const ReducedScene& model, Reference reference,
+WorkPrecision work_precision(const Model& model, Reference reference,
                              std::vector<const Method*> methods, const Effort& effort,
                              const std::function<void(const Point&)>& report) {
   require_measurable(model, methods);
@@ -58,9 +58,8 @@ WorkPrecision work_precision(const ReducedScene& model, Reference reference,
   return all;
 }
 
-WorkPrecision work_precision(const ReducedScene& model, double until,
-                             std::vector<const Method*> methods, const Effort& effort,
-                             double reference_seconds,
+WorkPrecision work_precision(const Model& model, double until, std::vector<const Method*> methods,
+                             const Effort& effort, double reference_seconds,
                              const std::function<void(const Point&)>& report) {
   require_measurable(model, methods);
   return work_precision(model, make_reference(model, until, reference_seconds), std::move(methods),

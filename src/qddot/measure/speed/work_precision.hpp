@@ -15,7 +15,7 @@ struct WorkPrecision {
   // The fastest point at each accuracy 1e-1 ... 1e-9; rows point into `points`.
   std::vector<FrontRow> front() const { return fastest_at_each_accuracy(points, reference); }
   // All that is said of the points, with stability margins on the model. Borrows the points.
-  Chart chart(const ReducedScene& model) const {
+  Chart chart(const Model& model) const {
     return chart_of(points, reference, usual_accuracies(), StabilityMargins(model));
   }
 };
@@ -25,12 +25,12 @@ struct WorkPrecision {
 // called with each point. The points that decide are timed again at the end (time_front_again).
 // Throws NoReference if no reference can be made. Throws std::invalid_argument for a model with
 // massless unknowns or without unknowns, and for a method that cannot run it.
-WorkPrecision work_precision(const ReducedScene& model, double until,
+WorkPrecision work_precision(const Model& model, double until,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              double reference_seconds = 10,
                              const std::function<void(const Point&)>& report = {});
 // The same up to the end of a given reference.
-WorkPrecision work_precision(const ReducedScene& model, Reference reference,
+WorkPrecision work_precision(const Model& model, Reference reference,
                              std::vector<const Method*> methods = {}, const Effort& effort = {},
                              const std::function<void(const Point&)>& report = {});
 

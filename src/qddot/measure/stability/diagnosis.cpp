@@ -40,7 +40,7 @@ constexpr Index most_factorized = 100000;
 bool has_own_step(const Method& method) { return has_linear_step(method) && method.order > 0; }
 
 // Runs the method and calls see() for each of some times before `until`, for `seconds` at most.
-Summary run(const Method& method, const Options& options, const ReducedScene& scene, double until,
+Summary run(const Method& method, const Options& options, const Model& scene, double until,
             double seconds, const std::function<void(const State&)>& see) {
   Observer some{random_step_times(options.step_size, until, most_looks_back), see};
   some.times.pop_back();
@@ -53,8 +53,7 @@ Summary run(const Method& method, const Options& options, const ReducedScene& sc
 // Watches whether the energy of a motion is still right.
 class EnergyWatch {
  public:
-  explicit EnergyWatch(const ReducedScene& scene)
-      : scene_(scene), start_(scene.energy(scene.initial())) {
+  explicit EnergyWatch(const Model& scene) : scene_(scene), start_(scene.energy(scene.initial())) {
     see(scene.initial());
   }
   bool see(const State& state) {
@@ -71,7 +70,7 @@ class EnergyWatch {
   bool is_same() const { return is_same_; }
 
  private:
-  const ReducedScene& scene_;
+  const Model& scene_;
   double start_, largest_ = 0;
   bool is_same_ = true;
 };
@@ -82,7 +81,7 @@ class EnergyWatch {
 struct Before {
   double t = 0, omega = 0, t_of_omega = 0, buckling = 0;
 };
-Before before_failure(const Method& method, const Options& options, const ReducedScene& scene,
+Before before_failure(const Method& method, const Options& options, const Model& scene,
                       double t_end, double seconds) {
   const auto pushed = [&](const Vec& q) {
     return method.is(Trait::implicit) && is_quickly_searched(scene.system())
@@ -152,7 +151,7 @@ std::string crossed(const Method& method, double h, const Before& before, bool i
 }
 
 // Whether a run reaches the end without a growth of its energy; empty if time is up.
-std::optional<bool> holds(const Method& method, const Options& options, const ReducedScene& scene,
+std::optional<bool> holds(const Method& method, const Options& options, const Model& scene,
                           double until, double seconds) {
   if (seconds <= 0) return {};
   const double energy = scene.energy(scene.initial());
@@ -171,7 +170,7 @@ std::optional<bool> holds(const Method& method, const Options& options, const Re
 }
 
 // Half a sentence if the forces of the start accelerate nodes to absurd speeds; empty if not.
-std::string extreme_start(const ReducedScene& scene) {
+std::string extreme_start(const Model& scene) {
   const Vec& mass = scene.system().mass();
   Vec f(mass.size());
   scene.system().force(scene.initial().q, f);
@@ -187,7 +186,7 @@ std::string extreme_start(const ReducedScene& scene) {
 
 }  // namespace
 
-std::string step_warning(const Method& method, const Options& options, const ReducedScene& scene) {
+std::string step_warning(const Method& method, const Options& options, const Model& scene) {
   if (!has_own_step(method)) return "";
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
@@ -217,7 +216,7 @@ std::string growth_warning(const Method& method, const Summary& summary) {
       method.knob == Knob::step_size ? "--step-size" : "--rtol");
 }
 
-std::string diagnosis(const Method& method, const Options& options, const ReducedScene& scene,
+std::string diagnosis(const Method& method, const Options& options, const Model& scene,
                       double until, const Summary& summary, double seconds) {
   constexpr std::array diagnosed = {Outcome::diverged, Outcome::not_finite,
                                     Outcome::indefinite_matrix, Outcome::newton_failed};

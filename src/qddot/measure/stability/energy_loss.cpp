@@ -30,8 +30,8 @@ constexpr int loss_looks = 64, most_finer = 20;
 constexpr std::size_t most_keeping = 3;
 
 // Runs the method for `seconds` at most, and shows some of its states.
-Summary run_again(const Method& method, const Options& options, const ReducedScene& scene,
-                  double until, double seconds, const Observer& some = {}) {
+Summary run_again(const Method& method, const Options& options, const Model& scene, double until,
+                  double seconds, const Observer& some = {}) {
   State state = scene.initial();
   const Deadline deadline(seconds);
   return make_integrator(method, scene.system(), with_tolerance_scales(options, scene))
@@ -39,7 +39,7 @@ Summary run_again(const Method& method, const Options& options, const ReducedSce
 }
 
 // The motion's own frequency [rad/s], at random steps of a repeated run.
-double seen_frequency(const Method& method, const Options& options, const ReducedScene& scene,
+double seen_frequency(const Method& method, const Options& options, const Model& scene,
                       double until, double seconds) {
   KineticFrequency frequency(scene.system());
   frequency.see(scene.initial());
@@ -93,7 +93,7 @@ bool is_candidate(const Method& method, const System& system) {
 
 }  // namespace
 
-std::string loss_warning(const Method& method, const Options& options, const ReducedScene& scene,
+std::string loss_warning(const Method& method, const Options& options, const Model& scene,
                          const Summary& summary, double until, double seconds) {
   if (!(summary.energy_loss > told_loss) || summary.outcome != Outcome::reached_end) return "";
   std::string words = fmt::format(

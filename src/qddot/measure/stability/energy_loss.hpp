@@ -3,7 +3,7 @@
 #include <string>
 
 #include "qddot/integrators/method.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -13,7 +13,7 @@ namespace qddot::inline measure {
 // frequency, and which step takes a hundredth. The own frequency is seen in a repetition of the
 // run. Methods that keep the energy at this step by theory are then tried, and named with what they
 // took. All that ends after `seconds`.
-std::string loss_warning(const Method& method, const Options& options, const ReducedScene& scene,
+std::string loss_warning(const Method& method, const Options& options, const Model& scene,
                          const Summary& summary, double until, double seconds);
 
 }  // namespace qddot::inline measure

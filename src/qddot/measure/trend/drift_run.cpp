@@ -25,7 +25,7 @@ constexpr int path_octave = 24, path_even = 256;
 // Records the invariants of a run's states.
 class Recorder {
  public:
-  Recorder(const ReducedScene& scene, const Momenta& momenta, const MotionScales& scales,
+  Recorder(const Model& scene, const Momenta& momenta, const MotionScales& scales,
            const std::vector<SampledStep>& steps, double h)
       : scene_(scene), momenta_(momenta), scales_(scales), steps_(steps), h_(h) {
     const auto nodes = scene.expand(scene.initial());
@@ -85,7 +85,7 @@ class Recorder {
     return worst;
   }
 
-  const ReducedScene& scene_;
+  const Model& scene_;
   const Momenta& momenta_;
   const MotionScales& scales_;
   const std::vector<SampledStep>& steps_;
@@ -114,7 +114,7 @@ std::vector<DriftPoint> path_of(const std::vector<Sample>& samples, const Motion
 
 }  // namespace
 
-DriftRun run_drift(const Method& method, const Options& options, const ReducedScene& scene,
+DriftRun run_drift(const Method& method, const Options& options, const Model& scene,
                    const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan) {
   DriftRun run{.method = &method,
                .value = method.knob == Knob::step_size ? options.step_size : options.rtol};
@@ -174,11 +174,11 @@ std::string verdict(const DriftRun& run, double until) {
 
 DriftRun energy_trend(const Scene& scene, const Method& method, const Options& options,
                       double until, double seconds) {
-  return energy_trend(std::make_shared<const ReducedScene>(reduced_for(method, scene)),
-                      Momenta(scene), method, options, until, seconds);
+  return energy_trend(std::make_shared<const Model>(reduced_for(method, scene)), Momenta(scene),
+                      method, options, until, seconds);
 }
 
-DriftRun energy_trend(std::shared_ptr<const ReducedScene> model, const Momenta& momenta,
+DriftRun energy_trend(std::shared_ptr<const Model> model, const Momenta& momenta,
                       const Method& method, const Options& options, double until, double seconds) {
   constexpr double looks = 1e5;
   const Simulation run(std::move(model), method, options);

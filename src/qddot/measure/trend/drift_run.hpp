@@ -37,7 +37,7 @@ struct DriftRun {
 
 // Runs the method on the scene. Energy errors are (E(t) - E(0)) / scales.kinetic; errors of momenta
 // are divided by scales.linear and scales.angular.
-DriftRun run_drift(const Method& method, const Options& options, const ReducedScene& scene,
+DriftRun run_drift(const Method& method, const Options& options, const Model& scene,
                    const Momenta& momenta, const MotionScales& scales, const DriftPlan& plan);
 
 // The verdict on the run's energy. It is `unknown` if the run ended before until/2 [s], unless it
@@ -55,7 +55,7 @@ DriftRun energy_trend(const Scene& scene, const Method& method, const Options& o
                       double until, double seconds = 60);
 // The same for a model that others share, as one of the caller's own forces is, with the momenta
 // that are known to be conserved. It needs V, and K only if the method does.
-DriftRun energy_trend(std::shared_ptr<const ReducedScene> model, const Momenta& momenta,
+DriftRun energy_trend(std::shared_ptr<const Model> model, const Momenta& momenta,
                       const Method& method, const Options& options, double until,
                       double seconds = 60);
 

@@ -23,7 +23,7 @@ constexpr double longest_run = 20;  // [s], for scenes too large for studies of 
 // Extends the scales by the magnitudes of states of a motion.
 class Look {
  public:
-  Look(const ReducedScene& scene, const Momenta& momenta, MotionScales& scales)
+  Look(const Model& scene, const Momenta& momenta, MotionScales& scales)
       : scene_(scene), momenta_(momenta), scales_(scales) {}
 
   void at(const State& state) {
@@ -51,7 +51,7 @@ class Look {
   }
 
  private:
-  const ReducedScene& scene_;
+  const Model& scene_;
   const Momenta& momenta_;
   MotionScales& scales_;
   KineticFrequency frequency_{scene_.system()};
@@ -60,7 +60,7 @@ class Look {
 
 }  // namespace
 
-double fastest_frequency(const ReducedScene& scene) {
+double fastest_frequency(const Model& scene) {
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   const double w = largest_frequency(system, q);
@@ -69,7 +69,7 @@ double fastest_frequency(const ReducedScene& scene) {
   return squares.size() > 0 ? std::sqrt(std::max(squares[0], 0.0)) : 0;
 }
 
-MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until) {
+MotionScales motion_scales(const Model& scene, const Momenta& momenta, double until) {
   MotionScales scales{
       .energy = scene.energy(scene.initial()), .kinetic = 0, .linear = 0, .angular = 0};
   Look look(scene, momenta, scales);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "qddot/measure/motion/momenta.hpp"
-#include "qddot/scene/reduce/reduced_scene.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -17,12 +17,12 @@ struct MotionScales {
 };
 
 // The largest finite natural frequency [rad/s] at the start of the motion.
-double fastest_frequency(const ReducedScene& scene);
+double fastest_frequency(const Model& scene);
 
 // Measures the scales in a run of 20 000 steps at h w_max = 1/2, or to `until` [s] if that is
 // earlier. The method is Blanes and Moan's of order 4, or IDA if nodes are massless. A system
 // without K has no known w_max: it is run to `until` by an adaptive method, and its excess is not
 // looked for.
-MotionScales motion_scales(const ReducedScene& scene, const Momenta& momenta, double until);
+MotionScales motion_scales(const Model& scene, const Momenta& momenta, double until);
 
 }  // namespace qddot::inline measure

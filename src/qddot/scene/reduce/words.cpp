@@ -109,6 +109,13 @@ std::string mistaken_sentence(const std::string& difference) {
       difference);
 }
 
+std::logic_error defect(const std::string& difference) {
+  return std::logic_error(fmt::format(
+      "a defect of qddot, please report the scene: with its reductions {} (--no-reduce leaves them "
+      "out)",
+      difference));
+}
+
 std::vector<Finding> findings_of(const std::vector<Part>& parts,
                                  const std::vector<std::unique_ptr<System>>& systems,
                                  int dimension) {

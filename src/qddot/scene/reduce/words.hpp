@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ std::string falling_sentence(std::size_t falling, std::size_t resting, bool is_l
 std::string parts_sentence(std::size_t parts);
 // A sentence that says which reduction was left out of a part because it changed the part, and how.
 std::string mistaken_sentence(const std::string& difference);
+// The error of a scene whose start would have that difference with any reductions.
+std::logic_error defect(const std::string& difference);
 
 // Findings of the parts, each with its system: their subspaces, mirrors and constant K, with parts
 // of one kind together. `dimension`: of the scene.

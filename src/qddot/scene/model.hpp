@@ -11,11 +11,12 @@ namespace qddot {
 
 namespace reduce {
 class Part;
-class Reduced;
+struct Pieces;
 }  // namespace reduce
 
-// The smallest System that moves exactly as a scene does. It also tells what is left out and why,
-// and leads back to all of the scene's nodes. Each reduction is exact up to rounding:
+// A system with its start, which also leads back to all nodes and energies. Made of a scene, it is
+// the smallest System that moves exactly as the scene does, and tells what is left out and why.
+// Each reduction is exact up to rounding:
 //   pins                a pinned node's position is a constant; springs between two only add to V
 //   duplicates          see reduce/springs.hpp
 //   massless            see reduce/series.hpp
@@ -31,19 +32,19 @@ class Reduced;
 // The start is checked: every part is compared with its nodes and springs as drawn
 // (Part::difference_from). A reduction that fails is left out of that part, and findings() says so.
 // Then all nodes, T and V are compared with the scene.
-class ReducedScene {
+class Model {
  public:
   // The scene must be valid (see validate); its drawn positions are the start, even if it asks for
   // equilibrium. Throws std::logic_error, in a sentence, if the start differs from the scene's for
   // every set of reductions: a defect of this class.
-  explicit ReducedScene(const Scene& scene, const Reductions& reductions = {});
+  explicit Model(const Scene& scene, const Reductions& reductions = {});
   // Takes a system of the caller's own, of which nothing is left out: node i has the unknowns
   // dimension i to dimension (i + 1) - 1, none is pinned, and all energy is the system's. Throws
   // std::invalid_argument, in a sentence, if the dimension or the sizes are not allowed.
-  ReducedScene(std::shared_ptr<const System> system, State initial, int dimension);
-  ~ReducedScene();
-  ReducedScene(ReducedScene&&) noexcept;
-  ReducedScene& operator=(ReducedScene&&) noexcept;
+  Model(std::shared_ptr<const System> system, State initial, int dimension);
+  ~Model();
+  Model(Model&&) noexcept;
+  Model& operator=(Model&&) noexcept;
 
   // The reduced system; it may consist of blocks (see Blocks).
   const System& system() const;
@@ -84,7 +85,7 @@ class ReducedScene {
   std::vector<Index> unknowns_by_part() const;
 
  private:
-  std::unique_ptr<const reduce::Reduced> reduced_;
+  std::unique_ptr<const reduce::Pieces> pieces_;
 };
 
 }  // namespace qddot

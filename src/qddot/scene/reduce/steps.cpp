@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/scene/reduce/part_members.hpp"
+#include "qddot/scene/reduce/pieces.hpp"
+#include "qddot/scene/reduce/springs.hpp"
+#include "qddot/scene/reduce/words.hpp"
+
+namespace qddot::reduce {
+namespace {
+
+// Whether the part of each node never leaves a line.
+std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spring>& springs,
+                           const Eigen::Vector3d& gravity, int dimension) {
+  std::vector<bool> is_on_line(nodes.size(), dimension == 1);
+  if (dimension == 1) return is_on_line;
+  for (const PartMembers& members : parts_of(nodes, springs)) {
+    DrawnPart drawn = drawn_part(members, nodes, springs, gravity);
+    let_fall(drawn);  // a part stays on its line when it falls, whether that is reduced or not
+    if (frame_of(drawn, dimension).dimension > 1) continue;
+    for (const std::size_t node : members.nodes) is_on_line[node] = true;
+  }
+  return is_on_line;
+}
+
+// The steps of the reduction, in order.
+class Steps {
+ public:
+  Steps(const Scene& scene, const Reductions& reductions)
+      : scene_(scene), reductions_(reductions) {}
+
+  Pieces taken();
+
+ private:
+  void leave_out_pins();
+  void merge(std::vector<Spring>& springs);
+  void condense(std::vector<Spring>& springs);
+  void leave_out_static_springs(const std::vector<Spring>& springs);
+  std::vector<PartMembers> divide(const std::vector<Spring>& springs);
+  void build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs);
+  // The part as its motion is integrated; nothing if it rests in its falling frame.
+  std::optional<DrawnPart> moving_part(const PartMembers& members,
+                                       const std::vector<Spring>& springs);
+  // The part with all reductions that leave its start as drawn.
+  Part faithful_part(const DrawnPart& drawn);
+  void report(Reduction reduction, std::string what) {
+    pieces_.findings.push_back({reduction, std::move(what)});
+  }
+
+  const Scene& scene_;
+  const Reductions& reductions_;
+  Pieces pieces_{.nodes = scene_.nodes, .dimension = scene_.dimension};
+  std::size_t resting_ = 0;  // parts that rest in their fall
+};
+
+Pieces Steps::taken() {
+  for (Node& node : pieces_.nodes) {
+    if (node.pinned) node.velocity.setZero();
+  }
+  if (reductions_.has(Reduction::pins)) leave_out_pins();
+  std::vector<Spring> springs = scene_.springs;
+  for (Spring& spring : springs) spring.stiff = is_stiff(spring.law, scene_.stiff_above);
+  if (reductions_.has(Reduction::duplicates)) merge(springs);
+  if (reductions_.has(Reduction::massless)) condense(springs);
+  leave_out_static_springs(springs);
+  build(divide(springs), springs);
+  return std::move(pieces_);
+}
+
+void Steps::leave_out_pins() {
+  const auto pins =
+      static_cast<std::size_t>(std::ranges::count(pieces_.nodes, true, &Node::pinned));
+  if (pins > 0) report(Reduction::pins, pinned_sentence(pins));
+}
+
+void Steps::merge(std::vector<Spring>& springs) {
+  const std::size_t before = springs.size();
+  springs = merged_springs(springs);
+  if (springs.size() < before) {
+    report(Reduction::duplicates, merged_sentence(before - springs.size(), springs.size()));
+  }
+}
+
+void Steps::condense(std::vector<Spring>& springs) {
+  if (std::ranges::none_of(pieces_.nodes, [](const Node& n) { return !n.pinned && n.mass == 0; }))
+    return;
+  pieces_.series =
+      condense_series(pieces_.nodes, springs, scene_.stiff_above,
+                      on_lines(pieces_.nodes, springs, scene_.gravity, pieces_.dimension));
+  if (pieces_.series.empty()) return;
+  std::vector<std::size_t> condensed;
+  for (const Series& series : pieces_.series) {
+    series.place(pieces_.nodes);
+    for (const auto& joint : series.joints) condensed.push_back(joint.node);
+  }
+  report(Reduction::massless, condensed_sentence(condensed, pieces_.series.size()));
+}
+
+void Steps::leave_out_static_springs(const std::vector<Spring>& springs) {
+  for (const auto& [ends, law, holds, stiff] : springs) {
+    const Node &a = pieces_.nodes[ends[0]], &b = pieces_.nodes[ends[1]];
+    if (a.pinned && b.pinned) pieces_.static_energy += law.energy((b.position - a.position).norm());
+  }
+}
+
+std::vector<PartMembers> Steps::divide(const std::vector<Spring>& springs) {
+  std::vector<bool> is_condensed(pieces_.nodes.size(), false);
+  for (const Series& series : pieces_.series) {
+    for (const auto& joint : series.joints) is_condensed[joint.node] = true;
+  }
+  std::vector<PartMembers> parts;
+  std::vector<std::size_t> flying;
+  for (PartMembers& members : parts_of(pieces_.nodes, springs)) {
+    const std::size_t first = members.nodes.front();
+    if (is_condensed[first]) continue;  // it is on no spring any more
+    if (members.springs.empty() && reductions_.has(Reduction::free_flight)) {
+      const Node& node = pieces_.nodes[first];
+      Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
+      if (node.mass > 0) acceleration = scene_.gravity + node.load / node.mass;
+      pieces_.flying.push_back({first, node.velocity, acceleration});
+      flying.push_back(first);
+    } else {
+      parts.push_back(std::move(members));
+    }
+  }
+  if (!flying.empty()) report(Reduction::free_flight, flying_sentence(flying));
+  if (!reductions_.has(Reduction::parts)) return joined(parts);
+  if (parts.size() > 1) report(Reduction::parts, parts_sentence(parts.size()));
+  return parts;
+}
+
+void Steps::build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs) {
+  std::vector<std::unique_ptr<System>> systems;
+  Index n = 0;
+  for (const PartMembers& members : parts) {
+    const std::optional<DrawnPart> drawn = moving_part(members, springs);
+    if (!drawn) continue;
+    Part& part = pieces_.parts.emplace_back(faithful_part(*drawn));
+    systems.push_back(part.take_system());
+    pieces_.static_energy += part.energy_of_origin();
+    n += part.initial().q.size();
+  }
+  pieces_.initial = {0, Vec(n), Vec(n)};
+  Index at = 0;
+  for (const Part& part : pieces_.parts) {
+    const Index own = part.initial().q.size();
+    pieces_.initial.q.segment(at, own) = part.initial().q;
+    pieces_.initial.v.segment(at, own) = part.initial().v;
+    at += own;
+  }
+  const auto falling = static_cast<std::size_t>(
+      std::ranges::count_if(pieces_.parts, [](const Part& part) { return part.fall().moves(); }));
+  const bool is_loaded = std::ranges::any_of(pieces_.parts, &Part::is_loaded);
+  if (falling + resting_ > 0)
+    report(Reduction::falling, falling_sentence(falling, resting_, is_loaded));
+  for (Finding& finding : findings_of(pieces_.parts, systems, pieces_.dimension)) {
+    pieces_.findings.push_back(std::move(finding));
+  }
+  if (systems.empty()) {
+    pieces_.system = make_mass_spring(
+        {.dimension = pieces_.dimension, .offers_split = scene_.stiff_above.has_value()});
+  } else if (systems.size() == 1) {
+    pieces_.system = std::move(systems.front());
+  } else {
+    pieces_.system = std::make_unique<BlockDiagonalSystem>(std::move(systems));
+  }
+}
+
+std::optional<DrawnPart> Steps::moving_part(const PartMembers& members,
+                                            const std::vector<Spring>& springs) {
+  DrawnPart drawn = drawn_part(members, pieces_.nodes, springs, scene_.gravity);
+  drawn.offers_split = scene_.stiff_above.has_value();
+  if (!reductions_.has(Reduction::falling)) return drawn;
+  let_fall(drawn);
+  if (!rests(drawn)) return drawn;
+  ++resting_;
+  for (const std::size_t node : drawn.nodes) {
+    pieces_.flying.push_back({node, drawn.fall.velocity, drawn.fall.gravity});
+  }
+  return {};
+}
+
+Part Steps::faithful_part(const DrawnPart& drawn) {
+  Reductions reductions = reductions_;
+  Part part(drawn, pieces_.dimension, reductions);
+  for (const Reduction suspect :
+       {Reduction::mirror, Reduction::dimension, Reduction::constant_stiffness}) {
+    if (!reductions.has(suspect)) continue;
+    const auto difference = part.difference_from(drawn);
+    if (!difference) return part;
+    report(suspect, mistaken_sentence(*difference));
+    reductions = reductions.without(suspect);
+    part = Part(drawn, pieces_.dimension, reductions);
+  }
+  if (const auto difference = part.difference_from(drawn)) throw defect(*difference);
+  return part;
+}
+
+}  // namespace
+
+Pieces pieces_of(const Scene& scene, const Reductions& reductions) {
+  return Steps(scene, reductions).taken();
+}
+
+}  // namespace qddot::reduce
