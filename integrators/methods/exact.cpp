@@ -58,7 +58,7 @@ Method exact() {
           .summary = "the exact motion mode by mode, at every step size; where K is constant",
           .source = "superposition of modes, derived in src/qddot/analysis/linear_motion.hpp",
           .order = 0,
-          .traits = {Trait::symplectic},
+          .traits = {Trait::symplectic, Trait::reversible},
           .needs = {Need::stiffness, Need::constant_stiffness},
           .make = create<Exact>};
 }

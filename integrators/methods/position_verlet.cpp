@@ -25,7 +25,7 @@ Method position_verlet() {
               "position Verlet",
           .order = 2,
           .stability_limit = 2,
-          .traits = {Trait::symplectic},
+          .traits = {Trait::symplectic, Trait::reversible},
           .takes = {Option::compensated},
           .make = create_splitting<position_verlet_splitting>};
 }

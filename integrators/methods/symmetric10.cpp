@@ -30,6 +30,7 @@ Method symmetric10() {
           .order = 10,
           .stability_limit = 0.80073844315885567,
           .recurrence_roots = symmetric_roots<symmetric10_formula>,
+          .traits = {Trait::remembers_steps},
           .make = create_symmetric<symmetric10_formula>};
 }
 

@@ -32,6 +32,7 @@ Method symmetric6() {
           .order = 6,
           .stability_limit = 1.1254974776976225,
           .recurrence_roots = symmetric_roots<symmetric6_formula>,
+          .traits = {Trait::remembers_steps},
           .make = create_symmetric<symmetric6_formula>};
 }
 

@@ -23,6 +23,8 @@ class SymmetricMultistep final : public FixedStep {
   SymmetricMultistep(const Method& method, const System& system, const Options& options,
                      const SymmetricFormula& formula);
 
+  const SymmetricFormula& table() const { return formula_; }
+
  private:
   void start(const State& state) override;
   Outcome step(const State& now, double h, State& next) override;
