@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <numeric>
 
 #include <boost/test/unit_test.hpp>
