@@ -35,8 +35,7 @@ std::vector<const Method*> in_order_of_promise(const System& system) {
   // times what others do on all charts, never bound anything.
   std::erase_if(order, [&](const Method* method) {
     return !applies_to(*method, system) || method->order == 1 || !method->stock_of.empty() ||
-           method->name.starts_with("arkode_erk") || method->name.starts_with("arkode_mri") ||
-           method->name == "cvode_adams";
+           (method->family == Family::sundials && !method->is(Trait::implicit));
   });
   return order;
 }

@@ -62,7 +62,7 @@ Method bdf2() {
       .summary = "two-step backward differentiation; one solve a step, damps fast vibrations",
       .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.1, III.5",
       .order = 2,
-      .traits = {Trait::implicit, Trait::accepts_massless},
+      .traits = {Trait::implicit, Trait::accepts_massless, Trait::remembers_steps},
       .needs = {Need::conservative, Need::stiffness},
       .takes = {Option::solve_tolerance, Option::solver},
       .make = create<Bdf2>};

@@ -33,7 +33,7 @@ Method blanes_moan4() {
               "table 3, SRKN_6^b",
           .order = 4,
           .stability_limit = 3.1634650665581848,  // where the trace of one step first exceeds 2
-          .traits = {Trait::symplectic},
+          .traits = {Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &blanes_moan4_splitting(),

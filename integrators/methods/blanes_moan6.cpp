@@ -36,7 +36,7 @@ Method blanes_moan6() {
               "table 3, SRKN_11^b",
           .order = 6,
           .stability_limit = 3.1414310877528075,  // where the trace of one step first exceeds 2
-          .traits = {Trait::symplectic},
+          .traits = {Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &blanes_moan6_splitting(),

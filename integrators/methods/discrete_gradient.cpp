@@ -63,7 +63,7 @@ Method discrete_gradient() {
           .summary = "keeps energy and momenta at every h, to what its nonlinear solve leaves",
           .source = "Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, section 4",
           .order = 2,
-          .traits = {Trait::implicit, Trait::cancels_torques},
+          .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient, Need::autonomous},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<EnergyMomentum>};

@@ -61,7 +61,7 @@ Method exact() {
       .summary = "the exact motion mode by mode, at every step size; where K is constant",
       .source = "superposition of modes, derived in src/qddot/analysis/linear_motion.hpp",
       .order = 0,
-      .traits = {Trait::symplectic},
+      .traits = {Trait::symplectic, Trait::reversible},
       .needs = {Need::conservative, Need::stiffness, Need::constant_stiffness, Need::autonomous},
       .make = create<Exact>};
 }

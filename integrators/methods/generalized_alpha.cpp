@@ -100,7 +100,7 @@ Method generalized_alpha() {
           .summary = "second order; damps infinite frequencies by the spectral radius a step",
           .source = "Chung and Hulbert, Journal of Applied Mechanics 60 (1993) 371-375, eq. 25",
           .order = 2,
-          .traits = {Trait::implicit},
+          .traits = {Trait::implicit, Trait::remembers_steps},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
           .make = create<ChungHulbert>};
@@ -111,7 +111,7 @@ Method hht() {
           .summary = "HHT-alpha: Newmark with damping, the finite-element codes' default",
           .source = "Hilber, Hughes, Taylor, Earthquake Eng. Struct. Dyn. 5 (1977) 283-292",
           .order = 2,
-          .traits = {Trait::implicit},
+          .traits = {Trait::implicit, Trait::remembers_steps},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
           .make = create<Hht>};

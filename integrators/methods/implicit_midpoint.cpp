@@ -44,7 +44,7 @@ Method implicit_midpoint() {
           .summary = "symplectic and A-stable; keeps momenta, and energy where f is linear",
           .source = "Hairer, Lubich, Wanner, Geometric Numerical Integration, eq. II.1.7",
           .order = 2,
-          .traits = {Trait::implicit, Trait::symplectic},
+          .traits = {Trait::implicit, Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<ImplicitMidpoint>};

@@ -39,7 +39,7 @@ Method kahan_li8() {
           .source = "Kahan and Li, Mathematics of Computation 66 (1997) 1089-1099",
           .order = 8,
           .stability_limit = 3.0964386800007322,  // where the trace of one step first exceeds 2
-          .traits = {Trait::symplectic},
+          .traits = {Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &kahan_li8_splitting(),

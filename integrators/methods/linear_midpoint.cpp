@@ -161,7 +161,7 @@ Method linear_midpoint() {
               "of which this is one iteration",
           .order = 2,
           .solves_stiff_part = true,
-          .traits = {Trait::implicit, Trait::cancels_torques},
+          .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
           .make = create<LinearMidpoint<plain>>};
@@ -173,7 +173,7 @@ Method linear_midpoint4() {
           .source = "Suzuki, Physics Letters A 146 (1990) 319-323",
           .order = 4,
           .solves_stiff_part = true,
-          .traits = {Trait::implicit, Trait::cancels_torques},
+          .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
           .make = create<LinearMidpoint<suzuki>>};

@@ -243,6 +243,7 @@ Method multirate_adams() {
               "Demirel, Niegemann, Busch and Hochbruck, J. Computational Physics 285 (2015) "
               "133-148",
           .order = k + 1,
+          .traits = {Trait::remembers_steps},
           .needs = {Need::conservative, Need::stiffness, Need::split_forces},
           .make = create<MultirateAdams<k>>};
 }

@@ -25,7 +25,7 @@ Method position_verlet() {
               "position Verlet",
           .order = 2,
           .stability_limit = 2,
-          .traits = {Trait::symplectic},
+          .traits = {Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &position_verlet_splitting(),

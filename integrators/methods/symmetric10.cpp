@@ -30,6 +30,7 @@ Method symmetric10() {
           .order = 10,
           .stability_limit = 0.80073844315885567,
           .recurrence_roots = symmetric_roots<symmetric10_formula>,
+          .traits = {Trait::remembers_steps},
           .needs = {Need::conservative},
           .symmetric_formula = &symmetric10_formula(),
           .make = create_symmetric};

@@ -34,6 +34,7 @@ Method symmetric4() {
       .order = 4,
       .stability_limit = 1.8257418583505537,
       .recurrence_roots = symmetric_roots<symmetric4_formula>,
+      .traits = {Trait::remembers_steps},
       .needs = {Need::conservative},
       .symmetric_formula = &symmetric4_formula(),
       .make = create_symmetric};

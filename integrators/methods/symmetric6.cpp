@@ -32,6 +32,7 @@ Method symmetric6() {
           .order = 6,
           .stability_limit = 1.1254974776976225,
           .recurrence_roots = symmetric_roots<symmetric6_formula>,
+          .traits = {Trait::remembers_steps},
           .needs = {Need::conservative},
           .symmetric_formula = &symmetric6_formula(),
           .make = create_symmetric};

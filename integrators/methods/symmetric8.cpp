@@ -31,6 +31,7 @@ Method symmetric8() {
           .order = 8,
           .stability_limit = 0.9601524432891618,
           .recurrence_roots = symmetric_roots<symmetric8_formula>,
+          .traits = {Trait::remembers_steps},
           .needs = {Need::conservative},
           .symmetric_formula = &symmetric8_formula(),
           .make = create_symmetric};

@@ -153,6 +153,7 @@ Method takahashi_imada4() {
           .order = 4,
           .stability_limit = std::sqrt(12),
           .recurrence_roots = roots,
+          .traits = {Trait::remembers_steps},
           .needs = {Need::conservative, Need::autonomous},
           .make = create<TakahashiImada4>};
 }

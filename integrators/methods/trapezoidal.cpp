@@ -46,7 +46,7 @@ Method trapezoidal() {
           .summary = "Newmark's beta = 1/4, gamma = 1/2 (average acceleration); damps nothing",
           .source = "Newmark, Journal of the Engineering Mechanics Division 85 (1959) 67-94",
           .order = 2,
-          .traits = {Trait::implicit},
+          .traits = {Trait::implicit, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
           .make = create<Trapezoidal>};

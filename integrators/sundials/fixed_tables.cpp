@@ -74,7 +74,7 @@ Method arkode_implicit_midpoint() {
   Method method = fixed<implicit_midpoint_table>(
       "arkode_implicit_midpoint", 2, "the implicit midpoint rule",
       "Hairer, Lubich and Wanner, Geometric Numerical Integration, section I.1.2");
-  method.traits = method.traits.with(Trait::symplectic);
+  method.traits = method.traits.with(Trait::symplectic).with(Trait::reversible);
   return method;
 }
 

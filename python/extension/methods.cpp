@@ -19,7 +19,7 @@ py::tuple names_in(const SetOf<Kind>& set, const std::array<const char*, count>&
 // These have the order of the enumerations in method.hpp.
 constexpr std::array trait_names = {"implicit",        "linearly_implicit", "symplectic",
                                     "cancels_torques", "accepts_massless",  "interpolates",
-                                    "bounds_steps"};
+                                    "bounds_steps",    "reversible",        "remembers_steps"};
 constexpr std::array need_names = {"stiffness", "constant_stiffness", "split_forces",
                                    "discrete_gradient", "laplacian"};
 constexpr std::array option_names = {"max_order",       "stability_detection", "iterations",

@@ -69,7 +69,7 @@ Growth growth_seen(const Method& method, const Problem& p, double t_end, const O
 BOOST_AUTO_TEST_CASE(motions_as_they_should_be_have_no_more_energy_than_they_began_with) {
   for (const Problem& p : {falling(), hammock(2), hammock(3), linear_hammock(2)}) {
     for (const Method& method : general_methods()) {
-      if (method.name == "explicit_euler") continue;  // which gains some at every h
+      if (method.stability_limit == 0) continue;  // which gains some at every h
       BOOST_TEST_CONTEXT(method.name) {
         // h w_max < 0.3 of the chain, 0.1 of the others.
         const double g = growth(method, p, 1, options_of(method, 0.004, 1e-6));
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(a_loss_is_what_the_last_energy_says) {
              boost::test_tools::tolerance(1e-9));
   // A fall turns energy into speed and loses none.
   for (const Method& method : general_methods()) {
-    if (method.name == "explicit_euler" || method.order == 1) continue;
+    if (method.stability_limit == 0 || method.order == 1) continue;
     BOOST_TEST(
         run(method, falling(), 0.3, options_of(method, 0.001, 1e-6)).summary.energy_loss < 0.01,
         method.name);

@@ -41,13 +41,14 @@ std::vector<Method> of_chosen_steps() {
   });
 }
 
+constexpr int usual_halvings = 9, most_halvings = 12;
+
 // The numbers of steps that are tried, one after the other. Order 1 needs the most steps, until its
 // higher terms (h w / 2 of it) do not matter; those of order 2 are their squares. Multistep methods
 // need more steps than they begin with; their errors soon are so small that halvings would leave
 // too few.
-std::vector<int> step_counts(const Method& method, const KnownMotion& motion) {
+std::vector<int> step_counts(const Method& method, const KnownMotion& motion, int halvings) {
   std::vector<int> list;
-  const int halvings = method.order == 1 ? 12 : 9;
   if (!method.recurrence_roots) {
     // In the stiff hammock only small steps inside err, and errors soon are rounding.
     const bool has_both = method.asks(Need::split_forces) && motion.name != "stiff hammock";
@@ -66,11 +67,11 @@ std::vector<int> step_counts(const Method& method, const KnownMotion& motion) {
 struct Orders {
   double q, v;
 };
-Orders observed_orders(const Method& method, const KnownMotion& motion) {
+Orders observed_orders(const Method& method, const KnownMotion& motion, int halvings) {
   const double until = motion.end.t;
   const double roundings = method.asks(Need::split_forces) ? 100 : 1;  // of the small steps inside
   std::vector<double> h, q, v;
-  for (const int steps : step_counts(method, motion)) {
+  for (const int steps : step_counts(method, motion, halvings)) {
     const Run r = run(method, *motion.system, motion.start, until, {.step_size = until / steps});
     if (!r.summary.message.empty()) {
       BOOST_TEST(steps < 40, r.summary.message);
@@ -162,7 +163,12 @@ BOOST_AUTO_TEST_CASE(two_unlike_methods_agree_on_the_nonlinear_reference) {
 
 BOOST_DATA_TEST_CASE(every_method_of_fixed_steps_has_its_order, of_fixed_steps(), method) {
   for (const KnownMotion* motion : motions_of(method)) {
-    const Orders observed = observed_orders(method, *motion);
+    // Higher terms that are large, or cancel the leading one, take more halvings to vanish.
+    int halvings = method.order == 1 ? most_halvings : usual_halvings;
+    Orders observed = observed_orders(method, *motion, halvings);
+    while (!is_of_order(method, observed) && !method.recurrence_roots &&
+           ++halvings <= most_halvings)
+      observed = observed_orders(method, *motion, halvings);
     BOOST_TEST_CONTEXT(motion->name << ", in q " << observed.q << ", in v " << observed.v) {
       BOOST_TEST(is_of_order(method, observed));
     }

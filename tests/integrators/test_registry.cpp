@@ -70,6 +70,9 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
       if (method.is(Trait::accepts_massless)) BOOST_TEST(method.is(Trait::implicit));
       if (method.varies_order() || method.is(Trait::interpolates))
         BOOST_TEST((method.knob == Knob::rtol));
+      if (method.is(Trait::reversible) || method.is(Trait::remembers_steps))
+        BOOST_TEST((method.knob == Knob::step_size));
+      if (method.recurrence_roots) BOOST_TEST(method.is(Trait::remembers_steps));
       if (!method.stock_of.empty()) {
         const Method* own = find_method(method.stock_of);
         BOOST_REQUIRE(own);
@@ -82,7 +85,8 @@ BOOST_AUTO_TEST_CASE(facts_about_a_method_fit_together) {
   // No test asks its questions of nobody.
   for (const auto& list :
        {stock_methods(), methods_with(Option::iterations), methods_with(Option::compensated),
-        methods_with(Trait::interpolates), methods_with(Trait::accepts_massless)}) {
+        methods_with(Trait::interpolates), methods_with(Trait::accepts_massless),
+        methods_with(Trait::reversible), methods_with(Trait::remembers_steps)}) {
     BOOST_TEST(!list.empty());
   }
   BOOST_TEST(family_name(Family::hand_written) != family_name(Family::sundials));

@@ -1,7 +1,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include "tests/integrators/runs.hpp"
+#include "tests/integrators/tables.hpp"
 #include "tests/symmetric_formulas.hpp"
 
 BOOST_AUTO_TEST_SUITE(symmetric)
@@ -54,7 +54,7 @@ std::vector<Vec> positions(const char* method, const System& system, const State
 
 // A polynomial of degree p + 1 is stepped exactly by a formula of order p; odd ones by symmetry.
 BOOST_AUTO_TEST_CASE(each_formula_meets_the_conditions_of_its_order_exactly_and_no_more) {
-  for (const auto& [name, formula, cosines] : symmetric_formulas()) {
+  for (const auto& [name, formula] : methods_with_tables<SymmetricMultistep>()) {
     BOOST_TEST_CONTEXT(name) {
       const int order = method_named(name).order;
       BOOST_TEST(order == formula.steps);

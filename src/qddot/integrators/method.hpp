@@ -39,6 +39,8 @@ enum class Trait {
   accepts_massless,  // runs systems with nodes of no mass
   interpolates,      // interpolates between its steps for an Observer
   bounds_steps,      // holds its steps to 1/w_max if the system has K
+  reversible,        // fixed steps from the end with v turned round lead back to the start
+  remembers_steps,   // a fixed step depends on earlier ones, not on q and v at its start alone
 };
 
 // Properties of a system, beside its forces, that a method needs.

@@ -36,6 +36,8 @@ class SymmetricMultistep final : public Formula {
   void show(X& x, bool may_evaluate, State& state);
   double squared_speed(const X& next);
 
+  const SymmetricFormula& table() const { return formula_; }
+
  private:
   void single_step(X& x, double h, X& next);
   // Computes the first k - 1 steps.
