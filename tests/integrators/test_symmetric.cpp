@@ -54,7 +54,7 @@ std::vector<Vec> positions(const char* method, const System& system, const State
 
 // A polynomial of degree p + 1 is stepped exactly by a formula of order p; odd ones by symmetry.
 BOOST_AUTO_TEST_CASE(each_formula_meets_the_conditions_of_its_order_exactly_and_no_more) {
-  for (const auto& [name, formula] : methods_with_tables<SymmetricMultistep>()) {
+  for (const auto& [name, formula] : methods_with_tables(&Method::symmetric_formula)) {
     BOOST_TEST_CONTEXT(name) {
       const int order = method_named(name).order;
       BOOST_TEST(order == formula.steps);
