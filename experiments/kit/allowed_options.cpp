@@ -1,11 +1,11 @@
 #include "experiments/kit/allowed_options.hpp"
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "experiments/kit/program.hpp"
 #include "qddot/integrators/base/step_times.hpp"
+#include "qddot/integrators/option_table.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::inline kit {
@@ -94,71 +94,76 @@ std::string tolerance_warning(const Options& options) {
 
 namespace {
 
-constexpr int most_iterations = 100000;  // a step
-
-struct Spelling {
-  const char* name;
-  Option option;
-};
-constexpr std::array spellings = {Spelling{"--max-order", Option::max_order},
-                                  Spelling{"--stability-detection", Option::stability_detection},
-                                  Spelling{"--iterations", Option::iterations},
-                                  Spelling{"--solve-tolerance", Option::solve_tolerance},
-                                  Spelling{"--spectral-radius", Option::spectral_radius},
-                                  Spelling{"--solver", Option::solver}};
+// Those of Method::takes that a command line has.
+std::vector<const OptionRow*> rows_of_takes() {
+  std::vector<const OptionRow*> rows;
+  for (const OptionRow& row : option_rows()) {
+    if (is_of_takes(row) && row.is_of_programs) rows.push_back(&row);
+  }
+  return rows;
+}
 
 template <class T>
-void require_that(bool is_allowed, const char* option, const T& value, const std::string& what) {
+void require_that(bool is_allowed, const std::string& option, const T& value,
+                  const std::string& what) {
   if (!is_allowed) {
     throw InvalidInput(fmt::format("{} {} is not allowed; it is {}", option, value, what));
   }
 }
 
-void require_values(const Program& program, const Options& o, int highest_order) {
-  if (program.has("--max-order")) require_within(o.max_order, 1, highest_order, "--max-order");
-  if (program.has("--iterations")) require_within(o.iterations, 1, most_iterations, "--iterations");
-  if (program.has("--solve-tolerance")) {
-    require_that(o.solve_tolerance > 0 && o.solve_tolerance < 1, "--solve-tolerance",
-                 o.solve_tolerance, "between 0 and 1");
+void require_value(const OptionRow& row, const Options& options, int highest_order) {
+  const std::string option = row.program_name();
+  if (const auto* whole = std::get_if<int Options::*>(&row.member)) {
+    const int most = row.most_in_programs > 0 ? row.most_in_programs : highest_order;
+    require_within(options.**whole, row.zero_is_own ? 1 : 0, most, option);
+  } else if (const auto* number = std::get_if<double Options::*>(&row.member)) {
+    const double value = options.**number;
+    const bool is_allowed = row.allows(value) && !(row.zero_is_own && value == 0);
+    require_that(is_allowed, option, value, row.allowed_in_programs);
   }
-  require_that(o.spectral_radius >= 0 && o.spectral_radius <= 1, "--spectral-radius",
-               o.spectral_radius, "from 0 to 1");
+}
+
+void require_values(const Program& program, const Options& options, int highest_order) {
+  for (const OptionRow* row : rows_of_takes()) {
+    if (program.has(row->program_name())) require_value(*row, options, highest_order);
+  }
+}
+
+template <class Number>
+void declare(Program& program, const OptionRow& row, Number& value) {
+  std::string text = row.words;
+  if (row.zero_is_own) {
+    const std::string usual = value > 0 ? fmt::format("{}", value) : "the method's own";
+    text += " (default: " + usual + ")";
+  }
+  program.bind(row.program_name(), value, text, !row.zero_is_own).last();
+}
+
+void declare(Program& program, const OptionRow& row, bool& value) {
+  program.bind(row.program_name(), value, row.words);
+}
+
+void declare(Program& program, const OptionRow& row, Solver& value) {
+  program
+      .word(row.program_name(), std::string(name(value)),
+            std::string(row.words) + ", one of " + solver_list())
+      .last()
+      .check([&value](const std::string& given, const std::string& option) {
+        const auto solver = find_solver(given);
+        require_that(solver.has_value(), option, given, "one of " + solver_list());
+        value = *solver;
+      });
 }
 
 }  // namespace
 
 Argument<Options> Program::method_options(const Options& usual) {
   Options& options = keep(Options(usual));
-  bind("--max-order", options.max_order,
-       "the highest order of methods of variable order (default: the method's own)")
-      .last();
-  bind("--stability-detection", options.stability_detection,
-       "let CVODE's BDF lower its order when it detects an instability");
-  bind(
-      "--iterations", options.iterations,
-      "number of iterations in a step, for methods with a fixed number (default: the method's own)")
-      .last();
-  const std::string own =
-      options.solve_tolerance > 0 ? fmt::format("{}", options.solve_tolerance) : "the method's own";
-  bind("--solve-tolerance", options.solve_tolerance,
-       "tolerance of the nonlinear solves of hand-written implicit methods, relative to the error "
-       "of the first guess (default: " +
-           own + ")")
-      .last();
-  bind("--spectral-radius", options.spectral_radius,
-       "the part of an infinitely fast vibration that a step of the generalised-alpha methods "
-       "keeps, from 0 to 1",
-       true)
-      .last();
-  word("--solver", std::string(qddot::name(options.solver)),
-       "the solver for the n x n matrices of implicit steps, one of " + solver_list())
-      .last()
-      .check([&options](const std::string& name, const std::string& option) {
-        const auto solver = find_solver(name);
-        require_that(solver.has_value(), option.c_str(), name, "one of " + solver_list());
-        options.solver = *solver;
-      });
-  return {*this, "--max-order", options};
+  const auto rows = rows_of_takes();
+  for (const OptionRow* row : rows) {
+    std::visit([&](auto member) { declare(*this, *row, options.*member); }, row->member);
+  }
+  return {*this, rows.front()->program_name(), options};
 }
 
 void require_options(const Program& program, const Options& options) {
@@ -170,21 +175,26 @@ void require_options(const Program& program, const Options& options) {
 }
 
 void require_options(const Program& program, const Options& options, const Method& method) {
-  for (const auto& [name, option] : spellings) {
-    if (!program.has(name) || method.listens_to(option)) continue;
-    throw InvalidInput(fmt::format(
-        "{} is not for {}; it is for {}", name, method.name,
-        names_where([option = option](const Method& other) { return other.listens_to(option); })));
+  for (const OptionRow* row : rows_of_takes()) {
+    if (!program.has(row->program_name()) || takes(method, *row)) continue;
+    throw InvalidInput(
+        fmt::format("{} is not for {}; it is for {}", row->program_name(), method.name,
+                    names_where([row](const Method& other) { return takes(other, *row); })));
   }
   require_values(program, options, method.order);
 }
 
 std::vector<std::string> options_taken_by(const Method& method) {
   std::vector<std::string> names;
-  for (const auto& [name, option] : spellings) {
-    if (method.listens_to(option)) names.emplace_back(name);
+  for (const OptionRow* row : rows_of_takes()) {
+    if (takes(method, *row)) names.push_back(row->program_name());
   }
   return names;
+}
+
+bool decides_how_a_method_runs(const std::string& option) {
+  return std::ranges::any_of(rows_of_takes(),
+                             [&](const OptionRow* row) { return row->program_name() == option; });
 }
 
 Argument<std::string> accuracy_of_option(Program& program) {

@@ -78,6 +78,9 @@ void require_options(const Program& program, const Options& options, const Metho
 // Those of these options that the method listens to.
 std::vector<std::string> options_taken_by(const Method& method);
 
+// Whether the option of a program is one of those that methods take.
+bool decides_how_a_method_runs(const std::string& option);
+
 // Adds --accuracy-of.
 Argument<std::string> accuracy_of_option(Program& program);
 

@@ -1,7 +1,6 @@
 #include "experiments/kit/points.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -149,11 +148,6 @@ const std::vector<std::string> columns_read = columns_in(
     "error_energy_max error_momentum_max error_modal_shares time_s time_min_s setup_s steps "
     "energy_growth");
 
-// The options of a study that decide how a method runs.
-constexpr std::array of_a_run = {"--no-reduce",  "--max-order",       "--stability-detection",
-                                 "--iterations", "--solve-tolerance", "--spectral-radius",
-                                 "--solver"};
-
 Point point_of(const WrittenTable& table, std::size_t row, const std::string& path) {
   const auto number = [&](const char* column) { return table.number(row, column); };
   const Method* method = find_method(table.text(row, "method"));
@@ -191,7 +185,7 @@ void take_options(const nlohmann::json& given, MeasuredPoints& study) {
   const auto options = program.method_options();
   std::vector<std::string> words = {"study"};
   for (const auto& [option, values] : given.items()) {
-    if (std::ranges::find(of_a_run, option) == of_a_run.end()) continue;
+    if (option != "--no-reduce" && !decides_how_a_method_runs(option)) continue;
     for (const auto& value : values)
       words.push_back(fmt::format("{}={}", option, value.get<std::string>()));
   }

@@ -6,17 +6,8 @@ from itertools import pairwise
 from study_folder import look
 
 LISTS = ("--methods", "--no-reduce", "--accuracies")
-FLAGS = ("--stability-detection",)
 # The options of the study that every run takes, beside those of its method.
 OF_EVERY_RUN = ("--no-reduce", "--threads")
-METHOD_OPTIONS = (
-    "--max-order",
-    "--stability-detection",
-    "--iterations",
-    "--solve-tolerance",
-    "--spectral-radius",
-    "--solver",
-)
 # ./run report gives this one itself.
 GIVEN_BY_RUN = {"--point-limit": "0.5"}
 
@@ -36,7 +27,7 @@ def study_options(sidecar):
     of other options the last value counts, a flag has None."""
     found = {}
     for name, values in (look(sidecar, "study", "options") or {}).items():
-        if name in FLAGS:
+        if values == ["true"]:
             found[name] = None
         elif values:
             found[name] = ",".join(values) if name in LISTS else values[-1]
@@ -79,11 +70,12 @@ class RunCommands:
         """The line that repeats a run of a method at a value of its knob; None where what the run
         was told is not known."""
         options = {name: given for name, given in self.options.items() if name in OF_EVERY_RUN}
-        listed = {name: given for name, given in self.options.items() if name in METHOD_OPTIONS}
-        if self.scene is None or self.until is None or (listed and method not in self.takes):
+        others = {name: given for name, given in self.options.items() if name not in options}
+        is_unsure = method not in self.takes and not others.keys() <= set(LISTS)
+        if self.scene is None or self.until is None or is_unsure:
             return None
-        taken = self.takes.get(method, [])
-        options |= {name: given for name, given in listed.items() if name in taken}
+        taken = self.takes.get(method) or []
+        options |= {name: given for name, given in others.items() if name in taken}
         words = ["build/bin/simulate", "--scene", self.scene, "--method", method]
         words += [f"--{knob.replace('_', '-')}", repr(value), "--until", repr(self.until)]
         return shlex.join([*words, *words_of(options)])

@@ -104,12 +104,11 @@ const Method& require_method(const std::string& name) {
 Options checked_options(const Arguments& a, const Method& method) {
   const bool fixed = method.knob == Knob::step_size;
   const char* wanted = fixed ? "--step-size" : "--rtol";
-  for (const char* other : {"--step-size", "--rtol", "--atol"}) {
-    const bool allowed =
-        fixed ? other == std::string("--step-size") : other != std::string("--step-size");
-    if (a.p.has(other) && !allowed) {
+  for (const OptionRow& row : option_rows()) {
+    const bool is_of_other_knob = std::holds_alternative<Knob>(row.takers) && !takes(method, row);
+    if (is_of_other_knob && a.p.has(row.program_name())) {
       throw InvalidInput(
-          fmt::format("{} is not for {}, which takes {}", other, method.name, wanted));
+          fmt::format("{} is not for {}, which takes {}", row.program_name(), method.name, wanted));
     }
   }
   if (!a.p.has(wanted)) {

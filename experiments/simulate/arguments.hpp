@@ -5,6 +5,7 @@
 
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
+#include "qddot/integrators/option_table.hpp"
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::simulate {
@@ -19,13 +20,9 @@ struct Arguments {
                "a relative error, in place of --method: the fastest method for it is found and "
                "run, and another run bounds its error");
   Argument<std::string> accuracy_of = accuracy_of_option(p);
-  Argument<double> step_size =
-      p.number("--step-size", "the step size h in s, for methods of fixed steps");
-  Argument<double> rtol = p.number("--rtol", "relative tolerance, for adaptive methods");
-  Argument<double> atol =
-      p.number("--atol",
-               "absolute tolerance in m and m/s, for adaptive methods (default: --rtol times "
-               "the scene's extent, and times its typical speed)");
+  Argument<double> step_size = p.number("--step-size", option_row("step_size").words);
+  Argument<double> rtol = p.number("--rtol", option_row("rtol").words);
+  Argument<double> atol = p.number("--atol", option_row("atol").words);
   Argument<Options> options = p.method_options();
   Argument<double> until = p.until();
   Argument<std::string> final_path =

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include "experiments/kit/provenance.hpp"
 #include "experiments/simulate/outputs.hpp"
 #include "experiments/simulate/pace.hpp"
+#include "qddot/integrators/option_table.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -36,9 +39,11 @@ constexpr double patience_with_a_step = 60;
 constexpr double patience_with_an_answer = 60;
 
 void refuse_choices(const Program& program) {
-  for (const char* option :
-       {"--method", "--step-size", "--rtol", "--atol", "--max-order", "--stability-detection",
-        "--iterations", "--solve-tolerance", "--spectral-radius", "--solver"}) {
+  std::vector<std::string> chosen = {"--method"};
+  for (const OptionRow& row : option_rows()) {
+    if (row.is_of_programs) chosen.push_back(row.program_name());
+  }
+  for (const std::string& option : chosen) {
     if (program.has(option)) {
       throw InvalidInput(fmt::format(
           "{} is not for --accuracy, which chooses the method and its knob: leave out one of both",

@@ -2,6 +2,7 @@
 
 #include "python/extension/bindings.hpp"
 #include "qddot/integrators/integrator.hpp"
+#include "qddot/integrators/option_table.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 
 namespace qddot::python {
@@ -22,19 +23,30 @@ constexpr std::array trait_names = {"implicit",        "linearly_implicit", "sym
                                     "bounds_steps",    "reversible",        "remembers_steps"};
 constexpr std::array need_names = {"stiffness", "constant_stiffness", "split_forces",
                                    "discrete_gradient", "laplacian"};
-constexpr std::array option_names = {"max_order",       "stability_detection", "iterations",
-                                     "solve_tolerance", "spectral_radius",     "solver",
-                                     "compensated"};
+
+py::tuple names_of_options(const Method& method) {
+  py::list taken;
+  for (const OptionRow& row : option_rows()) {
+    if (is_of_takes(row) && takes(method, row)) taken.append(row.name);
+  }
+  return py::tuple(taken);
+}
+
+// "all", a knob's name, or "takes", after the option's row.
+const char* takers_of(const OptionRow& row) {
+  if (const Knob* knob = std::get_if<Knob>(&row.takers)) return knob_name(*knob);
+  return is_of_takes(row) ? "takes" : "all";
+}
 
 py::dict method_record(const Method& method) {
   using py::arg;
-  return py::dict(
-      arg("name") = method.name, arg("summary") = method.summary, arg("source") = method.source,
-      arg("order") = method.order, arg("family") = family_name(method.family),
-      arg("knob") = knob_name(method.knob), arg("stability_limit") = method.stability_limit,
-      arg("traits") = names_in(method.traits, trait_names),
-      arg("needs") = names_in(method.needs, need_names),
-      arg("takes") = names_in(method.takes, option_names), arg("stock_of") = method.stock_of);
+  return py::dict(arg("name") = method.name, arg("summary") = method.summary,
+                  arg("source") = method.source, arg("order") = method.order,
+                  arg("family") = family_name(method.family), arg("knob") = knob_name(method.knob),
+                  arg("stability_limit") = method.stability_limit,
+                  arg("traits") = names_in(method.traits, trait_names),
+                  arg("needs") = names_in(method.needs, need_names),
+                  arg("takes") = names_of_options(method), arg("stock_of") = method.stock_of);
 }
 
 py::list records() {
@@ -43,32 +55,42 @@ py::list records() {
   return all;
 }
 
+py::list option_records() {
+  using py::arg;
+  py::list all;
+  for (const OptionRow& row : option_rows()) {
+    all.append(py::dict(arg("name") = row.name, arg("unit") = row.unit, arg("kind") = row.kind(),
+                        arg("words") = in_python(row.words), arg("takers") = takers_of(row)));
+  }
+  return all;
+}
+
+void set(double& member, const py::handle& value) { member = value.cast<double>(); }
+void set(int& member, const py::handle& value) { member = value.cast<int>(); }
+void set(bool& member, const py::handle& value) { member = value.cast<bool>(); }
+void set(Solver& member, const py::handle& value) {
+  const auto name = value.cast<std::string>();
+  const auto solver = find_solver(name);
+  if (!solver)
+    throw std::invalid_argument("solver: " + name + " is none; allowed are " + solver_list());
+  member = *solver;
+}
+
 }  // namespace
 
 Options options_of(const py::dict& given) {
   Options options;
-  const auto take = [&](const char* name, auto& to) {
-    if (given.contains(name)) to = given[name].template cast<std::decay_t<decltype(to)>>();
-  };
-  take("step_size", options.step_size);
-  take("rtol", options.rtol);
-  take("atol", options.atol);
-  take("max_order", options.max_order);
-  take("stability_detection", options.stability_detection);
-  take("iterations", options.iterations);
-  take("solve_tolerance", options.solve_tolerance);
-  take("spectral_radius", options.spectral_radius);
-  take("compensated", options.compensated);
-  if (given.contains("solver")) {
-    const auto name = given["solver"].cast<std::string>();
-    const auto solver = find_solver(name);
-    if (!solver)
-      throw std::invalid_argument("solver: " + name + " is none; allowed are " + solver_list());
-    options.solver = *solver;
+  for (const OptionRow& row : option_rows()) {
+    if (!given.contains(row.name)) continue;
+    const py::handle value = given[row.name];
+    std::visit([&](auto member) { set(options.*member, value); }, row.member);
   }
   return options;
 }
 
-void add_methods(py::module_& module) { module.def("methods", &records); }
+void add_methods(py::module_& module) {
+  module.def("methods", &records);
+  module.def("options", &option_records);
+}
 
 }  // namespace qddot::python

@@ -10,7 +10,7 @@ import numpy as np
 
 from qddot import _qddot
 from qddot._arrays import count, number
-from qddot._names import hint
+from qddot._names import F, hint
 
 
 @dataclass(frozen=True, repr=False)
@@ -76,14 +76,32 @@ def _word(value: Any, name: str) -> str:
     raise ValueError(f"{name}: {value!r} is no name")
 
 
-# Options that are no real numbers.
-_OPTIONS: dict[str, Callable[[Any, str], Any]] = {
-    "max_order": _whole,
-    "iterations": _whole,
-    "stability_detection": _flag,
-    "compensated": _flag,
+_KINDS: dict[str, Callable[[Any, str], Any]] = {
+    "number": number,
+    "integer": _whole,
+    "flag": _flag,
     "solver": _word,
 }
+# The rows of the table of options (option_table.hpp) that a call may give.
+_OPTIONS = {row["name"]: row for row in _qddot.options() if row["takers"] != "all"}
+_OF_KNOBS = {name: row["takers"] for name, row in _OPTIONS.items() if row["takers"] != "takes"}
+
+
+def options_in(arguments: dict[str, Any]) -> dict[str, Any]:
+    """Those of a function's arguments that are options of a run, in the table's order."""
+    return {name: arguments[name] for name in _OPTIONS if name in arguments}
+
+
+def lists_options(function: F) -> F:
+    """The same function, whose documentation ends with the options of Method.takes."""
+    rows = [f"    {n}: {row['words']}." for n, row in _OPTIONS.items() if n not in _OF_KNOBS]
+    function.__doc__ = "\n".join([(function.__doc__ or "").rstrip(), "", *rows, "    "])
+    return function
+
+
+def _checked(value: Any, name: str) -> Any:
+    kind = _OPTIONS[name]["kind"] if name in _OPTIONS else "number"
+    return _KINDS[kind](value, name)
 
 
 def options_for(
@@ -92,15 +110,12 @@ def options_for(
     """The given options in the form that the method takes. Raises ValueError for options that it
     ignores, and if its knob is missing. `beside`: names of other arguments, one of which may be
     misspelt."""
-    options = {
-        n: _OPTIONS.get(n, number)(value, n) for n, value in given.items() if value is not None
-    }
-    other = "rtol" if chosen.knob == "step_size" else "step_size"
-    for name in (other, *(["atol"] if chosen.knob == "step_size" else [])):
-        if name in options:
+    options = {n: _checked(value, n) for n, value in given.items() if value is not None}
+    for name, knob in _OF_KNOBS.items():
+        if name in options and knob != chosen.knob:
             raise ValueError(f"{name} is not for {chosen.name}, which takes {chosen.knob}")
     for name in options:
-        if name not in ("step_size", "rtol", "atol", *chosen.takes):
+        if name not in (*_OF_KNOBS, *chosen.takes):
             those = ", ".join(m.name for m in methods() if name in m.takes)
             raise ValueError(
                 f"{name} is not for {chosen.name}; it is for {those}"

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from qddot import _qddot
 from qddot._arrays import Floats, ascending_times, count, floats, number
-from qddot._methods import Method, method as method_named, options_for
+from qddot._methods import Method, lists_options, method as method_named, options_for, options_in
 from qddot._names import knows_its_arguments
 from qddot._scene import Scene
 from qddot._starts import Start, end_of, require_measurable, require_offered, seconds_of
@@ -185,6 +185,7 @@ def table_with_head(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 @knows_its_arguments
+@lists_options
 def solve(
     of: Scene | System,
     method: str | None = None,
@@ -226,18 +227,7 @@ def solve(
     with an outcome. Raises ValueError, with one sentence, for wrong arguments, and the exceptions
     of a System's callables.
     """
-    given = dict(
-        step_size=step_size,
-        rtol=rtol,
-        atol=atol,
-        max_order=max_order,
-        iterations=iterations,
-        stability_detection=stability_detection,
-        solve_tolerance=solve_tolerance,
-        spectral_radius=spectral_radius,
-        solver=solver,
-        compensated=compensated,
-    )
+    given = options_in(locals())
     end = end_of(of, until)
     times = None if save_at is None else ascending_times(save_at, "save_at", end)
     threads = count(threads, "threads", 1, 256)

@@ -68,6 +68,17 @@ class Names(unittest.TestCase):
             qddot.solve(qddot.scenes.oscillator(), "explicit_euler", step_size=0.003, until=9)
         self.assertEqual(warned.filename, __file__)
 
+    def test_solve_has_every_option_of_the_table(self):
+        import inspect
+
+        rows = [row for row in qddot._qddot.options() if row["takers"] != "all"]
+        for row in rows:
+            self.assertIn(row["name"], inspect.signature(qddot.solve).parameters)
+            if row["takers"] == "takes":
+                self.assertIn(f"{row['name']}: {row['words']}.", qddot.solve.__doc__)
+        taken = {name for method in qddot.methods() for name in method.takes}
+        self.assertEqual(taken, {row["name"] for row in rows if row["takers"] == "takes"})
+
     def test_callables_of_other_arguments(self):
         for call, sentence in (
             (lambda: qddot.System([1.0], lambda: None), r"force: it takes \(\); .*force\(q, f\)"),
