@@ -34,9 +34,9 @@ struct State {
 class VecView : public Eigen::Map<const Vec> {
  public:
   template <class Derived>
-    requires(bool(Derived::IsVectorAtCompileTime) && Derived::InnerStrideAtCompileTime == 1 &&
-             (Eigen::internal::traits<Derived>::Flags & Eigen::DirectAccessBit) != 0)
-  VecView(const Eigen::DenseBase<Derived>& x)
+  requires(bool(Derived::IsVectorAtCompileTime) && Derived::InnerStrideAtCompileTime == 1 &&
+           (Eigen::internal::traits<Derived>::Flags & Eigen::DirectAccessBit) != 0)
+      VecView(const Eigen::DenseBase<Derived>& x)
       : Eigen::Map<const Vec>(x.derived().data(), x.size()) {}
   VecView(const double* numbers, Index size) : Eigen::Map<const Vec>(numbers, size) {}
 };
@@ -47,13 +47,12 @@ class VecView : public Eigen::Map<const Vec> {
 // Formulas for f(t, q) leave v out: it is then empty. Positions alone leave out t as well: it is
 // then NaN. So only a system whose is_conservative() and is_autonomous() hold takes those.
 struct At {
-  At(double time, VecView positions, VecView velocities)
-      : t(time), q(positions), v(velocities) {}
+  At(double time, VecView positions, VecView velocities) : t(time), q(positions), v(velocities) {}
   At(double time, VecView positions) : At(time, positions, VecView(nullptr, 0)) {}
   At(const State& state) : At(state.t, state.q, state.v) {}
   template <class Derived>
-    requires std::convertible_to<const Derived&, VecView>
-  At(const Eigen::DenseBase<Derived>& positions)
+  requires std::convertible_to<const Derived&, VecView> At(
+      const Eigen::DenseBase<Derived>& positions)
       : At(std::numeric_limits<double>::quiet_NaN(), positions.derived()) {}
 
   // The same of `count` unknowns from the first one on.
@@ -149,6 +148,17 @@ inline double total_energy(const System& system, const State& state) {
 inline void require_stiffness(const System& system) {
   if (!system.has_stiffness()) {
     throw std::invalid_argument("the system computes no stiffness matrix K, which this is made of");
+  }
+}
+
+// Throws std::invalid_argument if forces depend on time or velocities, so that the energy is no
+// constant of the motion.
+inline void require_constant_energy(const System& system) {
+  if (!system.is_conservative() || !system.is_autonomous()) {
+    throw std::invalid_argument(
+        "the forces depend on time or velocities, and this takes the energy for a constant: run "
+        "the "
+        "system by one method at two steps or tolerances, and compare");
   }
 }
 

@@ -126,7 +126,7 @@ double Model::kinetic(const State& state) const {
 }
 
 double Model::potential(const State& state) const {
-  double energy = pieces_->system->potential(state.q) + pieces_->static_energy;
+  double energy = pieces_->system->potential(state) + pieces_->static_energy;
   for (const reduce::Flying& flying : pieces_->flying) {
     const Node& node = pieces_->nodes[flying.node];
     energy -= node.mass * flying.gravity.dot(node.position + flying.displacement(state.t));

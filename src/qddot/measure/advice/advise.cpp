@@ -105,6 +105,7 @@ Advices advise(const Model& model, double until, const std::vector<double>& accu
   if (!(until > 0) || !std::isfinite(until))
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
   if (model.system().size() == 0) return of_nothing(model, until, accuracies, of);
+  require_constant_energy(model.system());
   if (!model.system().has_stiffness())
     throw std::invalid_argument(
         "advise: the system has no stiffness K, which its frequencies follow from");

@@ -109,6 +109,7 @@ Answer solve(const Model& model, double until, const Wanted& wanted, const Scene
   if (!(until > 0) || !std::isfinite(until))
     throw std::invalid_argument(fmt::format("until = {:g} is not allowed; it is above 0", until));
   if (model.system().size() == 0) return of_nothing(model, until, wanted);
+  require_constant_energy(model.system());
   if (!model.system().has_stiffness())
     throw std::invalid_argument(
         "solve: the system has no stiffness K, which its frequencies follow from");

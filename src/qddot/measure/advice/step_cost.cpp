@@ -37,7 +37,7 @@ double seconds_of_force(const Model& model) {
   Vec f(model.system().size());
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
-    least = std::min(least, seconds_of([&] { model.system().force(model.initial().q, f); }));
+    least = std::min(least, seconds_of([&] { model.system().force(model.initial(), f); }));
   }
   return least;
 }

@@ -16,7 +16,7 @@ class KineticFrequency {
   // Takes one force.
   void see(const State& state) {
     const Vec& mass = system_.mass();
-    system_.force(state.q, f_);
+    system_.force(state, f_);
     for (Index i = 0; i < f_.size(); ++i) {
       if (mass[i] > 0) accelerations_ += f_[i] * f_[i] / mass[i];
     }

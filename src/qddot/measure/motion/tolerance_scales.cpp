@@ -21,9 +21,9 @@ double fastest(const std::vector<Node>& nodes) {
   return speed;
 }
 
-double largest_acceleration(const System& system, const Vec& q) {
+double largest_acceleration(const System& system, const State& state) {
   Vec f(system.size());
-  system.force(q, f);
+  system.force(state, f);
   double largest = 0;
   for (Index i = 0; i < system.size(); ++i) {
     if (system.mass()[i] > 0) largest = std::max(largest, std::abs(f[i]) / system.mass()[i]);
@@ -37,7 +37,7 @@ Options with_tolerance_scales(Options options, const Model& scene) {
   const auto nodes = scene.expand_beside_falls(scene.initial());
   const double length = extent(nodes);
   options.length = length > 0 ? length : 1;
-  const double a = largest_acceleration(scene.system(), scene.initial().q);
+  const double a = largest_acceleration(scene.system(), scene.initial());
   const double speed = std::max(fastest(nodes), std::sqrt(a * options.length));
   options.speed = speed > 0 && std::isfinite(speed) ? speed : options.length;
   return options;

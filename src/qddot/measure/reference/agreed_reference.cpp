@@ -54,6 +54,7 @@ std::optional<Solution> ida(const Model& scene, double until, double rtol, doubl
 
 Reference agreed_reference(const Model& scene, double until, double needed, double seconds) {
   const auto start = clock_now();
+  require_constant_energy(scene.system());
   Scales scales;
   const auto explicitly = [&](const char* name, double coarsest) {
     return [&, name, coarsest](int level, double limit) {

@@ -107,6 +107,7 @@ bool is_reduced_by_symmetry(const Model& scene) {
 Reference make_reference(const Model& scene, double until, double seconds, const Scene* start,
                          const Expect& expect) {
   const auto begin = clock_now();
+  require_constant_energy(scene.system());
   const Composed composed(scene, until, 0.6 * seconds, seconds, expect);
   const Solution& finest = composed.finest();
   const Errors& effect = composed.rounding().effect();

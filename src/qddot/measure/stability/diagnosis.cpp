@@ -173,7 +173,7 @@ std::optional<bool> holds(const Method& method, const Options& options, const Mo
 std::string extreme_start(const Model& scene) {
   const Vec& mass = scene.system().mass();
   Vec f(mass.size());
-  scene.system().force(scene.initial().q, f);
+  scene.system().force(scene.initial(), f);
   const double a = (mass.array() > 0).select(f.cwiseQuotient(mass), 0).lpNorm<Eigen::Infinity>();
   const double speed = std::sqrt(a * with_tolerance_scales({}, scene).length);
   if (f.allFinite() && speed < largest_speed) return "";

@@ -181,6 +181,7 @@ DriftRun energy_trend(const Scene& scene, const Method& method, const Options& o
 DriftRun energy_trend(std::shared_ptr<const Model> model, const Momenta& momenta,
                       const Method& method, const Options& options, double until, double seconds) {
   constexpr double looks = 1e5;
+  require_constant_energy(model->system());
   const Simulation run(std::move(model), method, options);
   const double step = options.step_size > 0 ? options.step_size : until / looks;
   return run_drift(method, run.options(), run.model(), momenta,
