@@ -88,7 +88,7 @@ double error_of(const Method& method, const System& system, double c, double a, 
   if (method.listens_to(Option::iterations)) options.iterations = 100;
   const auto integrator = make_integrator(method, system, options);
   const Summary summary = integrator->advance(state, until);
-  BOOST_TEST_REQUIRE(summary.outcome == Outcome::reached_end, summary.message);
+  BOOST_TEST_REQUIRE((summary.outcome == Outcome::reached_end), summary.message);
   BOOST_TEST(summary.energy_growth == 1);  // nobody takes the energy for a constant
   const State there = exact(c, a, until);
   return std::max(std::abs(state.q[0] - there.q[0]), std::abs(state.v[0] - there.v[0]));
@@ -123,7 +123,7 @@ void check_refusal(const Method& method, const System& system, Outcome outcome) 
   Options options;
   (method.knob == Knob::step_size ? options.step_size : options.rtol) = 1e-3;
   const Summary summary = make_integrator(method, system, options)->advance(state, until);
-  BOOST_TEST(summary.outcome == outcome, name(summary.outcome));
+  BOOST_TEST((summary.outcome == outcome), name(summary.outcome));
   BOOST_TEST(summary.message == advice(outcome));
   BOOST_TEST((summary.counts == Counts{}));
   BOOST_TEST((state.t == 0 && state.q == before.q));
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(one_block_that_is_driven_or_damped_makes_the_whole_so) {
     State state{0, Vec::Ones(2), Vec::Zero(2)};
     const Summary summary =
         make_integrator(method_named("rk4"), system, {.step_size = 1e-3})->advance(state, until);
-    BOOST_TEST_REQUIRE(summary.outcome == Outcome::reached_end);
+    BOOST_TEST_REQUIRE((summary.outcome == Outcome::reached_end));
     BOOST_TEST(std::abs(state.q[0] - exact(0, 0, until).q[0]) < 1e-9);  // h^4
     BOOST_TEST(std::abs(state.q[1] - exact(c, a, until).q[0]) < 1e-9);
     // Both functions of the whole see t and the block's own velocities.
