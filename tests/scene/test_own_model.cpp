@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/scene/drawn_system.hpp"
+#include "qddot/scene/reduce/part.hpp"
 #include "tests/measure.hpp"
 #include "tests/scene/drawn.hpp"
 
@@ -79,7 +80,7 @@ BOOST_AUTO_TEST_CASE(nothing_is_left_out_of_it) {
   BOOST_TEST((own.unknowns_by_part() == std::vector<Index>{10}));
   BOOST_TEST((own.massless_nodes() == std::vector<std::size_t>{4}));
   BOOST_TEST((own.massless_nodes() == Model(scene).massless_nodes()));
-  // The same with a motion in closed form: there is none.
+  // No node moves in closed form, so time alone changes nothing.
   State later = own.initial();
   later.t = 3;
   const auto at = own.expand(later), beside = own.expand_beside_falls(later);

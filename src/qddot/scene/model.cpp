@@ -14,7 +14,7 @@ using reduce::Fall;
 using reduce::Part;
 using reduce::Pieces;
 
-// Calls action(part, its q, its v) for each part that falls as a whole.
+// Calls action(its fall, its moments) for each part that falls as a whole.
 template <class Action>
 void for_falling(const std::vector<Part>& parts, const State& state, const Action& action) {
   Index at = 0;

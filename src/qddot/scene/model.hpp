@@ -46,17 +46,17 @@ class Model {
   Model(Model&&) noexcept;
   Model& operator=(Model&&) noexcept;
 
-  // The reduced system; it may consist of blocks (see Blocks).
+  // The system that is integrated; it may consist of blocks (see Blocks).
   const System& system() const;
   // Its positions and velocities at t = 0.
   const State& initial() const;
-  // The dimension of the scene and of its nodes.
+  // The dimension of the nodes: 1, 2 or 3.
   int dimension() const;
 
   // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest.
   // Nodes that move in closed form are where they are at state.t.
   std::vector<Node> expand(const State& state) const;
-  // The same into existing memory: `nodes` is empty, or a former expansion of this scene.
+  // The same into existing memory: `nodes` is empty, or a former expansion of this model.
   void expand(const State& state, std::vector<Node>& nodes) const;
   // The same without motions in closed form. Parts are seen from the frames that fall with them;
   // other nodes rest where they started. This measures only what is integrated.
@@ -76,7 +76,7 @@ class Model {
 
   // The reductions' effects, in order; a reduction without effect has no entry.
   const std::vector<Finding>& findings() const;
-  // The parts of the scene (see reduce/part.hpp).
+  // The parts of the scene (see reduce/part.hpp). An own system has none; below, it counts as one.
   const std::vector<reduce::Part>& parts() const;
   // The scene's numbers of the nodes that each part moves, in the order of the parts: its own nodes
   // and the condensed ones between them.

@@ -11,15 +11,6 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot {
-namespace {
-
-// Throws if the method cannot run the system.
-void require_fit(const Method& method, const System& system) {
-  if (const auto why = misfit(method, system))
-    throw std::invalid_argument(fmt::format("{}: {}", method.name, advice(*why)));
-}
-
-}  // namespace
 
 const Method& method(std::string_view name) {
   if (const Method* found = find_method(name)) return *found;
@@ -54,7 +45,8 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const Method& method,
     : model_(std::move(model)),
       options_(measure::with_tolerance_scales(options, *model_)),
       state_(model_->initial()) {
-  require_fit(method, model_->system());
+  if (const auto why = misfit(method, model_->system()))
+    throw std::invalid_argument(fmt::format("{}: {}", method.name, advice(*why)));
   integrator_ = make_integrator(method, model_->system(), options_);
 }
 
