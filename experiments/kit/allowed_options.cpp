@@ -130,7 +130,7 @@ void require_values(const Program& program, const Options& options, int highest_
 }
 
 template <class Number>
-void declare(Program& program, const OptionRow& row, Number& value) {
+void declare_option(Program& program, const OptionRow& row, Number& value) {
   std::string text = row.words;
   if (row.zero_is_own) {
     const std::string usual = value > 0 ? fmt::format("{}", value) : "the method's own";
@@ -139,11 +139,11 @@ void declare(Program& program, const OptionRow& row, Number& value) {
   program.bind(row.program_name(), value, text, !row.zero_is_own).last();
 }
 
-void declare(Program& program, const OptionRow& row, bool& value) {
+void declare_option(Program& program, const OptionRow& row, bool& value) {
   program.bind(row.program_name(), value, row.words);
 }
 
-void declare(Program& program, const OptionRow& row, Solver& value) {
+void declare_option(Program& program, const OptionRow& row, Solver& value) {
   program
       .word(row.program_name(), std::string(name(value)),
             std::string(row.words) + ", one of " + solver_list())
@@ -161,7 +161,7 @@ Argument<Options> Program::method_options(const Options& usual) {
   Options& options = keep(Options(usual));
   const auto rows = rows_of_takes();
   for (const OptionRow* row : rows) {
-    std::visit([&](auto member) { declare(*this, *row, options.*member); }, row->member);
+    std::visit([&](auto member) { declare_option(*this, *row, options.*member); }, row->member);
   }
   return {*this, rows.front()->program_name(), options};
 }
