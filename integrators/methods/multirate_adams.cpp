@@ -244,7 +244,7 @@ Method multirate_adams() {
               "133-148",
           .order = k + 1,
           .traits = {Trait::remembers_steps},
-          .needs = {Need::conservative, Need::stiffness, Need::split_forces},
+          .needs = {Need::conservative, Need::autonomous, Need::stiffness, Need::split_forces},
           .make = create<MultirateAdams<k>>};
 }
 

@@ -50,9 +50,9 @@ double magnitude(Real x) {
 }
 
 // The reference's true errors in the units of what it certifies, over the nodes with mass.
-template <class Real, class Model>
+template <class Real, class Plain>
 Errors true_errors(const Model& scene, const Scene& drawn, const Reference& reference,
-                   const PlainMotion<Real, Model>& motion, Real energy) {
+                   const PlainMotion<Real, Plain>& motion, Real energy) {
   const auto nodes = scene.expand(reference.end);
   Errors errors = no_error;
   const auto distance = [](const Eigen::Vector3d& a, const std::vector<Real>& b, std::size_t i) {

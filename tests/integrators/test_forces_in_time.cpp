@@ -27,6 +27,7 @@ class Driven final : public System,
   Driven(double stiffness, double damping, double amplitude, bool has_split = true)
       : System(Vec::Ones(1)), k_(stiffness), c_(damping), a_(amplitude), pattern_(1, 1) {
     pattern_.insert(0, 0) = 0;
+    pattern_.makeCompressed();
     if (!has_split) return;
     const auto spring = std::make_shared<Driven>(stiffness, 0, 0, false);
     split_ = {spring, std::make_shared<Driven>(0, damping, amplitude, false), spring, {0}};

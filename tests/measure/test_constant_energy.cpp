@@ -21,6 +21,7 @@ class Forced final : public System {
   Forced(double damping, double amplitude)
       : System(Vec::Ones(1)), c_(damping), a_(amplitude), pattern_(1, 1) {
     pattern_.insert(0, 0) = 0;
+    pattern_.makeCompressed();
   }
   double potential(const At& at) const override { return 0.5 * at.q[0] * at.q[0]; }
   void force(const At& at, MutableVec f) const override {

@@ -43,7 +43,9 @@ class TwoHollows final : public System {
     const double square = at.q[0] * at.q[0];
     return square * (square / 4 - 0.5);
   }
-  void force(const At& at, MutableVec f) const override { f[0] = at.q[0] * (1 - at.q[0] * at.q[0]); }
+  void force(const At& at, MutableVec f) const override {
+    f[0] = at.q[0] * (1 - at.q[0] * at.q[0]);
+  }
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   void stiffness(const At& at, SymmetricMatrix& k) const override {
     k.coeffs()[0] = 1 - 3 * at.q[0] * at.q[0];
