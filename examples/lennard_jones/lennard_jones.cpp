@@ -9,7 +9,7 @@
 namespace {
 
 using Eigen::Matrix2d, Eigen::Vector2d;
-using qddot::Index, qddot::Vec, qddot::ConstVec, qddot::MutableVec;
+using qddot::At, qddot::Index, qddot::Vec, qddot::ConstVec, qddot::MutableVec;
 
 constexpr double e = 1, s = 1;  // [J], [m]
 
