@@ -243,7 +243,7 @@ Method multirate_adams() {
               "Demirel, Niegemann, Busch and Hochbruck, J. Computational Physics 285 (2015) "
               "133-148",
           .order = k + 1,
-          .traits = {Trait::remembers_steps},
+          .traits = SetOf<Trait>{}.with(Trait::remembers_steps, k > 1),
           .needs = {Need::conservative, Need::autonomous, Need::stiffness, Need::split_forces},
           .make = create<MultirateAdams<k>>};
 }

@@ -52,15 +52,17 @@ void check_arguments(const System& system, const State& state, double t_end,
 
 Integrator::Integrator(const Method& method, const System& system, const Options& options)
     : method_(method), system_(system) {
-  if (system.size() == 0 || !applies_to(method, system)) return;
+  if (applies_to(method, system)) add_parts(system, 0, options);
+}
+
+void Integrator::add_parts(const System& system, Index first, const Options& options) {
+  if (system.size() == 0) return;
   if (system.blocks().empty()) {
-    parts_.push_back({0, std::make_unique<SystemRun>(method, system, options)});
+    parts_.push_back({first, std::make_unique<SystemRun>(method_, system, options)});
     return;
   }
-  Index first = 0;
   for (const auto& block : system.blocks()) {
-    if (block->size() > 0)
-      parts_.push_back({first, std::make_unique<SystemRun>(method, *block, options)});
+    add_parts(*block, first, options);
     first += block->size();
   }
 }

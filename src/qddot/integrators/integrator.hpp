@@ -75,6 +75,8 @@ class Integrator {
     std::exception_ptr thrown{};  // by its system or by the observer, in the present run_to
   };
 
+  // Adds the blocks of the system, and those within them; unknowns are from the first one on.
+  void add_parts(const System& system, Index first, const Options& options);
   bool is_whole() const { return parts_.size() == 1; }
   Outcome run(State& state, double t_end, const Observer& observer, std::stop_token stop);
   Outcome run_to(State& state, double t_stop);

@@ -60,6 +60,7 @@ void SystemRun::begin(const State& state) {
 }
 
 Outcome SystemRun::run_to(State& state, double t_stop) {
+  if (must_stop()) return Outcome::over_budget;
   try {
     const Outcome outcome = take_steps(t_stop);
     const Outcome end = outcome == Outcome::reached_end ? stepper_->show(t_stop, state) : outcome;
