@@ -37,7 +37,7 @@ nitpick_ignore_regex = [
     ("cpp:identifier", r"qddot(::measure)?"),
     ("cpp:identifier", r"Chart"),  # the record that pictures are drawn from
     ("cpp:identifier", r"reduce(::Part)?"),
-    # What methods are made from, for those who write one.
+    # Classes that methods are made from, for authors of methods.
     ("cpp:identifier", r"Splitting|NystromPair|SymmetricFormula|Stepper|SystemRun"),
 ]
 

@@ -69,9 +69,7 @@ class Offering final : public Plain,
   void weighted_stiffness(const At& at, double, SymmetricMatrix& k) const override {
     stiffness(at, k);
   }
-  void mean_force(const At& a, const At& b, MutableVec f) const override {
-    f = -(a.q + b.q) / 2;
-  }
+  void mean_force(const At& a, const At& b, MutableVec f) const override { f = -(a.q + b.q) / 2; }
   void assemble_laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
   bool bounds_stiffness() const override { return true; }
   bool is_linear_at(const ConstVec& q) const override { return q[0] < 1; }

@@ -29,12 +29,23 @@ void for_each(const std::vector<std::unique_ptr<System>>& blocks, const At& at,
   }
 }
 
+// Whether all blocks, or any, say yes to a question or have a capability: a member of System.
+template <class Said>
+bool all_have(const std::vector<std::unique_ptr<System>>& blocks, Said (System::*member)() const) {
+  return std::ranges::all_of(blocks,
+                             [=](const auto& block) { return bool((block.get()->*member)()); });
+}
+template <class Said>
+bool any_has(const std::vector<std::unique_ptr<System>>& blocks, Said (System::*member)() const) {
+  return std::ranges::any_of(blocks,
+                             [=](const auto& block) { return bool((block.get()->*member)()); });
+}
+
 }  // namespace
 
 BlockDiagonalSystem::BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks)
-    : System(all_masses(blocks)), blocks_(std::move(blocks)) {
-  const auto has_stiffness = [](const auto& block) { return block->has_stiffness(); };
-  if (!std::ranges::all_of(blocks_, has_stiffness)) return;
+    : CapableSystem(all_masses(blocks)), blocks_(std::move(blocks)) {
+  if (!all_have(blocks_, &System::has_stiffness)) return;
   pattern_.resize(size(), size());
   Index nonzeros = 0;
   for (const auto& block : blocks_) nonzeros += block->stiffness_pattern().nonZeros();
@@ -54,45 +65,39 @@ BlockDiagonalSystem::BlockDiagonalSystem(std::vector<std::unique_ptr<System>> bl
 }
 
 const SplitStiffness* BlockDiagonalSystem::split_stiffness() const {
-  const auto has = [](const auto& block) { return block->split_stiffness() != nullptr; };
-  return std::ranges::all_of(blocks_, has) ? this : nullptr;
+  return all_have(blocks_, &System::split_stiffness) ? this : nullptr;
 }
 
 const DiscreteGradient* BlockDiagonalSystem::discrete_gradient() const {
-  const auto has = [](const auto& block) { return block->discrete_gradient() != nullptr; };
-  return std::ranges::all_of(blocks_, has) ? this : nullptr;
+  return all_have(blocks_, &System::discrete_gradient) ? this : nullptr;
 }
 
 const Laplacian* BlockDiagonalSystem::laplacian() const {
-  const auto has = [](const auto& block) { return block->laplacian() != nullptr; };
-  return std::ranges::all_of(blocks_, has) ? this : nullptr;
+  return all_have(blocks_, &System::laplacian) ? this : nullptr;
 }
 
 const PiecewiseLinear* BlockDiagonalSystem::pieces() const {
-  const auto has = [](const auto& block) { return block->pieces() != nullptr; };
-  return std::ranges::any_of(blocks_, has) ? this : nullptr;
+  return any_has(blocks_, &System::pieces) ? this : nullptr;
 }
 
 const Validity* BlockDiagonalSystem::validity() const {
-  const auto has = [](const auto& block) { return block->validity() != nullptr; };
-  return std::ranges::any_of(blocks_, has) ? this : nullptr;
+  return any_has(blocks_, &System::validity) ? this : nullptr;
 }
 
 const Kinks* BlockDiagonalSystem::kinks() const {
-  const auto has = [](const auto& block) { return block->kinks() != nullptr; };
-  return std::ranges::any_of(blocks_, has) ? this : nullptr;
+  return any_has(blocks_, &System::kinks) ? this : nullptr;
 }
 
 bool BlockDiagonalSystem::is_conservative() const {
-  return std::ranges::all_of(blocks_, [](const auto& block) { return block->is_conservative(); });
+  return all_have(blocks_, &System::is_conservative);
 }
 
 bool BlockDiagonalSystem::is_autonomous() const {
-  return std::ranges::all_of(blocks_, [](const auto& block) { return block->is_autonomous(); });
+  return all_have(blocks_, &System::is_autonomous);
 }
 
 bool BlockDiagonalSystem::has_potential() const {
-  return std::ranges::all_of(blocks_, [](const auto& block) { return block->has_potential(); });
+  return all_have(blocks_, &System::has_potential);
 }
 
 double BlockDiagonalSystem::potential(const At& at) const {
@@ -160,8 +165,7 @@ bool BlockDiagonalSystem::bounds_stiffness() const {
 }
 
 bool BlockDiagonalSystem::stiffness_is_constant() const {
-  return std::ranges::all_of(blocks_,
-                             [](const auto& block) { return block->stiffness_is_constant(); });
+  return all_have(blocks_, &System::stiffness_is_constant);
 }
 
 bool BlockDiagonalSystem::is_linear_at(const ConstVec& q) const {
@@ -189,8 +193,8 @@ std::optional<double> BlockDiagonalSystem::end_of_validity(const State& from,
     const auto* validity = block.validity();
     if (!validity) return;
     const Index n = block.size();
-    const auto t = validity->end_of_validity(
-        {own.t, own.q, own.v}, {to.t, to.q.segment(at, n), to.v.segment(at, n)});
+    const auto t = validity->end_of_validity({own.t, own.q, own.v},
+                                             {to.t, to.q.segment(at, n), to.v.segment(at, n)});
     if (t && (!first || *t < *first)) first = t;
   });
   return first;

@@ -12,13 +12,7 @@ namespace qddot {
 //
 // It has K if all blocks have K, and offers a capability if all blocks offer it. Kinks, Validity
 // and PiecewiseLinear state exceptions; these it offers if any block does.
-class BlockDiagonalSystem final : public System,
-                                  public SplitStiffness,
-                                  public DiscreteGradient,
-                                  public Laplacian,
-                                  public PiecewiseLinear,
-                                  public Validity,
-                                  public Kinks {
+class BlockDiagonalSystem final : public CapableSystem {
  public:
   // `blocks`: in the order of their unknowns.
   explicit BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks);

@@ -88,6 +88,18 @@ class Kinks {
   virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
 };
 
+// A system that implements all capabilities above. Its accessors say which of them it has.
+class CapableSystem : public System,
+                      public SplitStiffness,
+                      public DiscreteGradient,
+                      public Laplacian,
+                      public PiecewiseLinear,
+                      public Validity,
+                      public Kinks {
+ public:
+  using System::System;
+};
+
 // A system divided in two: f = stiff->force + soft->force, and V and K are sums likewise. Both have
 // all unknowns and masses of the whole, which is valid where both are valid. Each K has the pattern
 // of its own forces alone, and exists if the whole has K. The soft system of a network holds

@@ -4,7 +4,7 @@ namespace qddot {
 
 ConstrainedSystem::ConstrainedSystem(std::shared_ptr<const System> system,
                                      std::vector<bool> is_held)
-    : System(system->mass()),
+    : CapableSystem(system->mass()),
       system_(std::move(system)),
       split_stiffness_(system_->split_stiffness()),
       discrete_gradient_(system_->discrete_gradient()),

@@ -12,13 +12,7 @@ namespace qddot {
 // comparison with the system that leaves them out.
 //
 // It has K if `system` has K, and offers the capabilities of `system` except Blocks.
-class ConstrainedSystem final : public System,
-                                public SplitStiffness,
-                                public DiscreteGradient,
-                                public Laplacian,
-                                public PiecewiseLinear,
-                                public Validity,
-                                public Kinks {
+class ConstrainedSystem final : public CapableSystem {
  public:
   // `is_held`: for each unknown of `system`.
   ConstrainedSystem(std::shared_ptr<const System> system, std::vector<bool> is_held);

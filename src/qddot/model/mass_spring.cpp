@@ -72,13 +72,7 @@ Network among(const std::vector<int>& nodes, const Network& network) {
 }
 
 template <int D>
-class MassSpring final : public System,
-                         public SplitStiffness,
-                         public DiscreteGradient,
-                         public Laplacian,
-                         public PiecewiseLinear,
-                         public Validity,
-                         public Kinks {
+class MassSpring final : public CapableSystem {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
@@ -197,7 +191,7 @@ class MassSpring final : public System,
 
  private:
   MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
-      : System(masses(network, layout)),
+      : CapableSystem(masses(network, layout)),
         layout_(layout),
         springs_(network, layout_),
         weight_(weights(network, layout)),
