@@ -54,17 +54,6 @@ enum class Need {
   autonomous,          // a force, V and K that do not depend on time
 };
 
-// The options that a method takes, beside its knob and scales.
-enum class Option {
-  max_order,  // `order` is then the highest possible
-  stability_detection,
-  iterations,
-  solve_tolerance,
-  spectral_radius,
-  solver,
-  compensated,
-};
-
 // A method as the registry knows it. Tables, tests and experiments use nothing else.
 struct Method {
   std::string name;

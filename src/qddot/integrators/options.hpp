@@ -34,6 +34,17 @@ struct Options {
   std::int64_t most_forces = 0;
 };
 
+// The options that a method may take (Method::takes), beside its knob and scales.
+enum class Option {
+  max_order,  // `order` is then the highest possible
+  stability_detection,
+  iterations,
+  solve_tolerance,
+  spectral_radius,
+  solver,
+  compensated,
+};
+
 // The smallest rtol: the sum of several roundings in a step's error hides smaller ones.
 constexpr double least_rtol = 1e-15;
 

@@ -7,7 +7,7 @@
 namespace qddot {
 
 // Several systems that no force couples, joined into one: M and K are block diagonal, V is the sum.
-// Integrators may run each block by itself (see Blocks), so an evaluation of the whole may
+// Integrators may run each block by itself (see System::blocks), so an evaluation of the whole may
 // allocate.
 //
 // It has K if all blocks have K, and offers a capability if all blocks offer it. Kinks, Validity

@@ -157,8 +157,7 @@ inline void require_constant_energy(const System& system) {
   if (!system.is_conservative() || !system.is_autonomous()) {
     throw std::invalid_argument(
         "the forces depend on time or velocities, and this takes the energy for a constant: run "
-        "the "
-        "system by one method at two steps or tolerances, and compare");
+        "the system by one method at two steps or tolerances, and compare");
   }
 }
 

@@ -46,7 +46,7 @@ class Model {
   Model(Model&&) noexcept;
   Model& operator=(Model&&) noexcept;
 
-  // The system that is integrated; it may consist of blocks (see Blocks).
+  // The system that is integrated; it may consist of blocks (see System::blocks).
   const System& system() const;
   // Its positions and velocities at t = 0.
   const State& initial() const;

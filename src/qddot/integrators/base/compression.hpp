@@ -4,9 +4,9 @@
 
 namespace qddot {
 
-// The share of the sideways push of compressed springs (Integrator::weighted_stiffness) with which
-// a matrix M - s K is still positive definite. It is all if that works, else a half, a quarter, ...
-// down to a 64th, or none.
+// The share of the sideways push of compressed springs (CountedSystem::weighted_stiffness) with
+// which a matrix M - s K is still positive definite. It is all if that works, else a half, a
+// quarter, ... down to a 64th, or none.
 class Compression {
  public:
   void start() { kept_ = 1; }

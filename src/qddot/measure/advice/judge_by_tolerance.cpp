@@ -228,7 +228,7 @@ bool Search::judge_energy(double accuracy) {
   // Steps of fixed length may keep an energy that is small beside its rounding.
   forecast_->learn(check_);
   for (int i = 0; i < static_cast<int>(rules_.rounds); ++i) {
-    const auto next = promised(rules_.part_of_judge * accuracy, INFINITY);
+    const auto next = promised(rules_.part_of_judge * accuracy, INFINITY, INFINITY);
     if (!next) break;
     const Trial& trial =
         runs_.make(*next->method, next->value, {.forces = runs_.forces_within(rules_.much_work)});

@@ -9,10 +9,11 @@
 
 namespace qddot::inline measure {
 
-// The fastest run, not made yet, that is expected to have the error in less than `seconds`.
-std::optional<Candidate> Search::promised(double error, double seconds) const {
+// The fastest run, not made yet, that is expected to have the error in less than `seconds`; in less
+// than `unseen` if no error of its method was seen, as the time of its forces is then a guess.
+std::optional<Candidate> Search::promised(double error, double seconds, double unseen) const {
   for (const Candidate& c : forecast_->candidates(error)) {
-    if (c.seconds > seconds) break;
+    if (c.seconds > (forecast_->has_seen(*c.method) ? seconds : unseen)) continue;
     // More runs of one method teach nothing.
     const auto made = std::ranges::count(runs_.all(), c.method, &Trial::method);
     if (!runs_.has(*c.method, c.value) && made < 2 * rules_.rounds) return c;
@@ -98,8 +99,9 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
   if (!may_forecast(*answer)) return answer;
   forecast_->learn(check_);
   runs_.time_again(*answer);
-  const double end = runs_.seconds() + std::max(rules_.unnoticed - answer->seconds,
-                                                rules_.part_of_answer * answer->seconds);
+  const double unnoticed_end = runs_.seconds() + rules_.unnoticed - answer->seconds,
+               end = std::max(unnoticed_end,
+                              runs_.seconds() + rules_.part_of_answer * answer->seconds);
   // A bound is 1.1 times the distance to a judge, beside what is unknown of the judge.
   const double rounding = check_.conditioning() ? check_.conditioning()->share : 0,
                unknown = std::max(rounding, check_.error_of(*check_.judge()));
@@ -110,7 +112,9 @@ const Trial* Search::race(const Trial* answer, double accuracy) {
     const double left = end - runs_.seconds();
     if (left <= 0) break;
     const double seconds = std::min(left, rules_.clearly_below * answer->seconds);
-    std::optional<Candidate> next = promised(aim, seconds);
+    const double unseen =
+        std::clamp(unnoticed_end - runs_.seconds(), seconds, rules_.doubt * answer->seconds);
+    std::optional<Candidate> next = promised(aim, seconds, unseen);
     // Forces of methods that were not run may be cheaper. All may be tried where that takes no
     // time.
     const double fewest = runs_.forces(*answer) * std::max(1.0, left / answer->seconds);

@@ -71,7 +71,7 @@ class Search {
   std::optional<Candidate> explicit_candidate(double error, const Method* checked,
                                               double unseen) const;
   bool may_forecast(const Trial& trial);
-  std::optional<Candidate> promised(double error, double seconds) const;
+  std::optional<Candidate> promised(double error, double seconds, double unseen) const;
   std::optional<Candidate> first_of_method(const Trial& answer, double fewest, double accuracy);
   const Trial* race(const Trial* answer, double accuracy);
 
