@@ -118,8 +118,8 @@ void require_value(const OptionRow& row, const Options& options, int highest_ord
     require_within(options.**whole, row.zero_is_own ? 1 : 0, most, option);
   } else if (const auto* number = std::get_if<double Options::*>(&row.member)) {
     const double value = options.**number;
-    const bool is_allowed = row.allows(value) && !(row.zero_is_own && value == 0);
-    require_that(is_allowed, option, value, row.allowed_in_programs);
+    const bool is_allowed = row.accepts(value) && !(row.zero_is_own && value == 0);
+    require_that(is_allowed, option, value, row.words_for_programs());
   }
 }
 

@@ -81,11 +81,11 @@ double SwingingCloth::distance(const State& a, const State& b) const {
 }
 
 void require_affordable(int nodes, double stiffness, double h, double until) {
-  constexpr double most_steps = 1e6;
-  if (const double steps = until / h; !(steps <= most_steps)) {
+  constexpr double allowed_steps = 1e6;
+  if (const double steps = until / h; !(steps <= allowed_steps)) {
     throw InvalidInput(fmt::format(
         "--step-size {:g}: the runs of {:g} s (--until) are {:.3g} steps; allowed are up to {:g}",
-        h, until, steps, most_steps));
+        h, until, steps, allowed_steps));
   }
   require_reachable(nodes, stiffness, h, "--step-size");
   require_reachable(nodes, stiffness, until, "--until");

@@ -1,5 +1,6 @@
 // The table of options, from which checks, command lines and Python are made.
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -36,21 +37,29 @@ BOOST_AUTO_TEST_CASE(each_option_has_one_row_and_some_method_takes_it) {
 BOOST_AUTO_TEST_CASE(each_number_is_refused_in_the_words_of_its_row) {
   for (const Method* method : {&method_named("verlet"), &method_named("ida")}) {
     for (const OptionRow& row : option_rows()) {
-      Options options{.step_size = 0.1, .rtol = 1e-3};
-      BOOST_CHECK_NO_THROW(check_options(*method, options));
-      if (!row.allows) continue;
-      if (const auto* number = std::get_if<double Options::*>(&row.member)) options.** number = -1;
-      if (const auto* whole = std::get_if<int Options::*>(&row.member)) options.** whole = -1;
-      std::string said;
-      try {
-        check_options(*method, options);
-      } catch (const std::invalid_argument& error) {
-        said = error.what();
+      for (const double wrong : {-1.0, double(INFINITY)}) {
+        Options options{.step_size = 0.1, .rtol = 1e-3};
+        BOOST_CHECK_NO_THROW(check_options(*method, options));
+        if (const auto* number = std::get_if<double Options::*>(&row.member)) {
+          options.** number = wrong;
+        } else if (const auto* whole = std::get_if<int Options::*>(&row.member);
+                   whole && wrong < 0) {
+          options.** whole = -1;
+        } else {
+          continue;
+        }
+        std::string said;
+        try {
+          check_options(*method, options);
+        } catch (const std::invalid_argument& error) {
+          said = error.what();
+        }
+        const bool is_ignored = std::holds_alternative<Knob>(row.takers) && !takes(*method, row);
+        const std::string sentence = method->name + ": " + row.name + " = " +
+                                     (wrong < 0 ? "-1" : "inf") + " is not allowed; it is " +
+                                     row.allowed;
+        BOOST_TEST(said == (is_ignored ? "" : sentence));
       }
-      const bool is_ignored = std::holds_alternative<Knob>(row.takers) && !takes(*method, row);
-      const std::string sentence =
-          method->name + ": " + row.name + " = -1 is not allowed; it is " + row.allowed;
-      BOOST_TEST(said == (is_ignored ? "" : sentence));
     }
   }
 }

@@ -107,8 +107,10 @@ def words_of(line):
 
 
 def run(line, **more):
-    """Runs a command line here, to its end."""
-    return subprocess.run(words_of(line), capture_output=True, text=True, check=False, **more)
+    """Runs a command line here, to its end, which comes within five minutes."""
+    return subprocess.run(
+        words_of(line), capture_output=True, text=True, check=False, timeout=300, **more
+    )
 
 
 def started(line):

@@ -7,12 +7,11 @@
 namespace qddot {
 namespace {
 
-bool is_size(double x) { return std::isfinite(x) && x > 0; }
+bool is_size(double x) { return x > 0; }
 bool is_share(double x) { return x >= 0 && x <= 1; }
 bool is_share_below_one(double x) { return x >= 0 && x < 1; }
 bool is_not_negative(double x) { return x >= 0; }
-bool is_atol(double x) { return std::isfinite(x) && x >= 0; }
-bool is_rtol(double x) { return std::isfinite(x) && x >= least_rtol; }
+bool is_rtol(double x) { return x >= least_rtol; }
 
 const OptionRow rows[] = {
     {.name = "step_size",
@@ -36,7 +35,7 @@ const OptionRow rows[] = {
      .words =
          "absolute tolerance in m and m/s, for adaptive methods (default: --rtol times the scene's "
          "extent, and times its typical speed)",
-     .allows = is_atol,
+     .allows = is_not_negative,
      .allowed = "an absolute tolerance, finite, or 0 for rtol times length and speed"},
     {.name = "length",
      .unit = "m",
@@ -93,8 +92,7 @@ const OptionRow rows[] = {
      .words = "the part of an infinitely fast vibration that a step of the generalised-alpha "
               "methods keeps, from 0 to 1",
      .allows = is_share,
-     .allowed = "from 0 to 1",
-     .allowed_in_programs = "from 0 to 1"},
+     .allowed = "from 0 to 1"},
     {.name = "solver",
      .unit = "",
      .member = &Options::solver,
@@ -113,6 +111,14 @@ std::string OptionRow::program_name() const {
   std::string spelling = std::string("--") + name;
   std::ranges::replace(spelling, '_', '-');
   return spelling;
+}
+
+bool OptionRow::accepts(double number) const {
+  return std::isfinite(number) && (!allows || allows(number));
+}
+
+const char* OptionRow::words_for_programs() const {
+  return *allowed_in_programs ? allowed_in_programs : allowed;
 }
 
 const char* OptionRow::kind() const {

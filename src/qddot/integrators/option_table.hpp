@@ -21,15 +21,19 @@ struct OptionRow {
   std::variant<double Options::*, int Options::*, bool Options::*, Solver Options::*> member;
   Takers takers;
   const char* words;                     // one line of help
-  bool (*allows)(double) = nullptr;      // whether Options may hold that number; null: any
+  bool (*allows)(double) = nullptr;      // whether Options may hold that finite number; null: any
   const char* allowed = "";              // the numbers that it may hold, after "it is"
   bool is_of_programs = true;            // whether a command line has it
   bool zero_is_own = false;              // whether 0 is the method's own choice, and never written
-  const char* allowed_in_programs = "";  // the same as `allowed`, for numbers on command lines
+  const char* allowed_in_programs = "";  // the same on command lines, if other words fit there
   int most_in_programs = 0;              // the largest whole number there; 0: the method's order
 
   // Its spelling on command lines: "--step-size" for step_size.
   std::string program_name() const;
+  // Whether Options may hold that number; none is infinite.
+  bool accepts(double number) const;
+  // The numbers that a command line may give, after "it is".
+  const char* words_for_programs() const;
   // "number", "integer", "flag" or "solver".
   const char* kind() const;
 };

@@ -19,7 +19,7 @@ Shared& shared() {
   return all;
 }
 
-thread_local OwnInterruption* own = nullptr;
+thread_local OwnInterruption* innermost = nullptr;
 
 }  // namespace
 
@@ -31,10 +31,13 @@ void interrupt(const Interruption& why) {
   shared().source.request_stop();
 }
 
-std::stop_token interruption() { return own ? own->stop() : shared().source.get_token(); }
+std::stop_token interruption() {
+  return innermost ? innermost->stop() : shared().source.get_token();
+}
 
 std::optional<Interruption> interrupted() {
-  if (own) return own->stop().stop_requested() ? std::optional(own->why()) : std::nullopt;
+  if (innermost)
+    return innermost->stop().stop_requested() ? std::optional(innermost->why()) : std::nullopt;
   if (!shared().source.stop_requested()) return {};
   shared().is_noticed = true;
   const std::lock_guard lock(shared().mutex);
@@ -48,8 +51,8 @@ void stop_if_interrupted() {
 bool is_interruption_noticed() { return shared().is_noticed; }
 
 OwnInterruption::OwnInterruption(std::stop_token stop, Interruption why)
-    : stop_(std::move(stop)), why_(std::move(why)), outer_(std::exchange(own, this)) {}
+    : stop_(std::move(stop)), why_(std::move(why)), outer_(std::exchange(innermost, this)) {}
 
-OwnInterruption::~OwnInterruption() { own = outer_; }
+OwnInterruption::~OwnInterruption() { innermost = outer_; }
 
 }  // namespace qddot::inline measure
