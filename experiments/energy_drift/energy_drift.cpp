@@ -88,7 +88,8 @@ int main(int argc, char** argv) {
         const auto& [method, value, seconds] = jobs[i];
         Options own = options_for(*method, value, subject.model, options);
         own.compensated = compensated && method->listens_to(Option::compensated);
-        runs[i] = drift_run_of(study.piece(fmt::format("{} {:.17g}", method->name, value), [&] {
+        const std::string name = fmt::format("{} {:.17g}", method->name, value);
+        runs[i] = drift_run_of(study.piece(name, [&, method = method, seconds = seconds] {
           return record_of(run_drift(*method, own, subject.model, momenta, scales,
                                      {course.step_size, course.until, seconds}));
         }));

@@ -192,7 +192,7 @@ Table& Program::table(const std::string& file, const std::vector<std::string>& h
 }
 
 std::unique_ptr<WholeFile>& Program::file(const std::string& name, const std::string& beginning) {
-  files_.push_back(std::make_unique<File>(name, beginning));
+  files_.push_back(std::make_unique<File>(File{name, beginning}));
   return files_.back()->file;
 }
 

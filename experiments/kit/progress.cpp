@@ -121,12 +121,12 @@ std::string progress_in_words(const ProgressState& s, std::size_t columns) {
   if (s.left) times += fmt::format(", about {} left", clock_words(*s.left));
   const std::string what = in_columns(s.what, columns);
   std::string head = s.program + (number.empty() ? "" : " " + number);
-  const auto room = [&] {
+  const auto room_left = [&] {
     const std::size_t taken = head.size() + times.size() + (head.empty() ? 2 : 4);
     return columns > taken ? columns - taken : 0;
   };
-  if (room() < std::min(columns_of(what), least_of_what)) head = number;
-  const std::string said = in_columns(what, room());
+  if (room_left() < std::min(columns_of(what), least_of_what)) head = number;
+  const std::string said = in_columns(what, room_left());
   std::string line = head;
   for (const std::string& part : {said, times}) {
     if (!part.empty()) line += (line.empty() ? "" : between) + part;

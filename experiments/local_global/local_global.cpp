@@ -124,7 +124,8 @@ int main(int argc, char** argv) {
           const SwingingCloth cloth(nodes, stiffness, 0);
           std::optional<State> exact;
           for (const auto& [method, n] : runs) {
-            const RunRow row = piece(study, fmt::format("run {} {}", method->name, n), [&] {
+            const std::string name = fmt::format("run {} {}", method->name, n);
+            const RunRow row = piece(study, name, [&, method = method, n = n] {
               if (!exact) exact = cloth.truth(cloth.start, until);
               return measured_run(cloth, *exact, *method, n, h, until);
             });
