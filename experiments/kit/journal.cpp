@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view signature = "qddot journal 1\n";
-constexpr std::size_t head = 8;  // of a record
+constexpr std::size_t bytes_of_head = 8;  // of a record
 
 std::uint32_t checksum(const std::uint8_t* bytes, std::size_t size) {
   boost::crc_32_type sum;
@@ -68,10 +68,11 @@ Journal::Contents Journal::read(const std::string& path) {
                                    std::min(bytes.size(), signature.size()));
   Contents contents{.is_own = signature.starts_with(beginning)};
   if (!contents.is_own) return contents;
-  for (std::size_t at = signature.size(); at + head <= bytes.size();) {
+  for (std::size_t at = signature.size(); at + bytes_of_head <= bytes.size();) {
     const std::size_t size = get(&bytes[at]);
-    const std::uint8_t* record = bytes.data() + at + head;
-    if (size > bytes.size() - at - head || get(&bytes[at + 4]) != checksum(record, size)) break;
+    const std::uint8_t* record = bytes.data() + at + bytes_of_head;
+    if (size > bytes.size() - at - bytes_of_head || get(&bytes[at + 4]) != checksum(record, size))
+      break;
     nlohmann::json json = nlohmann::json::from_cbor(record, record + size, true, false);
     if (json.is_discarded()) break;
     if (contents.whole == 0) {
@@ -79,7 +80,7 @@ Journal::Contents Journal::read(const std::string& path) {
     } else {
       contents.pieces[json.at(0)] = std::move(json.at(1));
     }
-    at += head + size;
+    at += bytes_of_head + size;
     contents.whole = at;
   }
   return contents;
