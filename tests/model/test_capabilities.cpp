@@ -39,19 +39,15 @@ class Plain : public System {
 };
 
 // The same with the capabilities that it is to offer; a place that it reports is at q = 1.
-class Offering final : public Plain,
-                       public SplitStiffness,
-                       public DiscreteGradient,
-                       public Laplacian,
-                       public PiecewiseLinear,
-                       public Validity,
-                       public Kinks {
+class Offering final : public CapableSystem {
  public:
-  explicit Offering(const Offers& offers) : offers_(offers) {
+  explicit Offering(const Offers& offers) : CapableSystem(Vec::Ones(1)), offers_(offers) {
     if (!offers.stiffness) return;
     pattern_.resize(1, 1);
     pattern_.insert(0, 0) = 0;
   }
+  double potential(const At& at) const override { return Plain().potential(at); }
+  void force(const At& at, MutableVec f) const override { Plain().force(at, f); }
   const SplitStiffness* split_stiffness() const override {
     return offers_.split_stiffness ? this : nullptr;
   }

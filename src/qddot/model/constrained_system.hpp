@@ -11,7 +11,7 @@ namespace qddot {
 // unknown that starts at rest stays at rest. It models pinned nodes that are kept as unknowns, for
 // comparison with the system that leaves them out.
 //
-// It has K if `system` has K, and offers the capabilities of `system` except Blocks.
+// It has K if `system` has K, and offers the capabilities of `system`, but has no blocks.
 class ConstrainedSystem final : public CapableSystem {
  public:
   // `is_held`: for each unknown of `system`.
