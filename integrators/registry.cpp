@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+#include <sundials/sundials_config.h>
+
 #include "qddot/integrators/integrator.hpp"
 
 // One line a method; each is defined in the file of its name or of its family.
@@ -65,6 +68,16 @@
   METHOD(arkode_implicit_midpoint) \
   METHOD(arkode_sdirk2)            \
   METHOD(arkode_trbdf2)            \
+  METHOD(arkode_sprk2)             \
+  METHOD(arkode_sprk3)             \
+  METHOD(arkode_sprk4)             \
+  METHOD(arkode_sprk5)             \
+  METHOD(arkode_sprk6)             \
+  METHOD(arkode_sprk8)             \
+  METHOD(arkode_sprk10)            \
+  METHOD(arkode_relaxed4)          \
+  METHOD(arkode_relaxed5)          \
+  METHOD(arkode_relaxed6)          \
   METHOD(ida)                      \
   METHOD(ida_klu)                  \
   METHOD(cvode_bdf)                \
@@ -78,10 +91,37 @@ namespace registered {
 QDDOT_METHODS(QDDOT_DECLARE)
 }  // namespace registered
 
-const std::vector<Method>& methods() {
+namespace {
+
+std::vector<Method> methods_that(bool can_run) {
 #define QDDOT_CALL(method) registered::method(),
-  static const std::vector<Method> all = {QDDOT_METHODS(QDDOT_CALL)};
+  std::vector<Method> all = {QDDOT_METHODS(QDDOT_CALL)};
+  std::erase_if(all, [&](const Method& method) { return (method.make != nullptr) != can_run; });
   return all;
+}
+
+}  // namespace
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> all = methods_that(true);
+  return all;
+}
+
+const std::vector<Method>& newer_methods() {
+  static const std::vector<Method> all = methods_that(false);
+  return all;
+}
+
+std::string sundials_needed(const Method& method) {
+  const int version = method.needs_sundials;
+  return version == 0 ? "" : fmt::format("{}.{}", version / 10000, version / 100 % 100);
+}
+
+std::string why_not_built(std::string_view name) {
+  const auto found = std::ranges::find(newer_methods(), name, &Method::name);
+  if (found == newer_methods().end()) return {};
+  return fmt::format("{} needs SUNDIALS {} or newer; this is built with {}", name,
+                     sundials_needed(*found), SUNDIALS_VERSION);
 }
 
 const Method* find_method(std::string_view name) {

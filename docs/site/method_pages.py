@@ -86,7 +86,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Method:
-    """An entry of the registry, as simulate --list-methods --csv prints it."""
+    """An entry of the registry, as simulate --list-methods --newer --csv prints it."""
 
     name: str
     entry: dict

@@ -1,4 +1,4 @@
-"""Writes README.md and the pages of docs/ from their templates in docs/pages/, with the measured
+"""Writes README.md, CITATION.cff and the pages of docs/ from their templates in docs/pages/, with the measured
 numbers put in.
 
     render.py               writes them
@@ -69,6 +69,8 @@ def rendered():
         file = ROOT / ("" if name == "README.md" else "docs") / name
         page = without_unsaid(jinja.get_template(template).render(**values))
         pages[file] = notice + with_opened_pictures(page)
+    citation = jinja.get_template("CITATION.cff").render()
+    pages[ROOT / "CITATION.cff"] = citation
     return pages
 
 

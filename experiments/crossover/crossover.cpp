@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
       p.table("kinds.csv", {"stiffness_ratio", "accuracy", "kind", "method", "time_s"});
   auto& points = p.table("points.csv", point_columns_with_ratio());
   return p.run(argc, argv, [&] {
-    const StiffFamily& family =
+    const StiffFamily family =
         named(name, stiff_families(), &StiffFamily::name, "--family", "a family");
     std::vector<double> ascending = ratios;
     std::ranges::sort(ascending);

@@ -108,6 +108,8 @@ void require_fit(const Method& method, const Model& model, const std::string& so
 }
 
 const Method& method_named(const std::string& name, const std::string& option) {
+  if (const std::string why = why_not_built(name); !why.empty())
+    throw InvalidInput(fmt::format("{}: {}", option, why));
   return named(name, methods(), &Method::name, option, "a method");
 }
 

@@ -49,6 +49,8 @@ struct Arguments {
   Argument<bool> explain =
       p.flag("--explain", "print the reductions of the scene with their reasons, and run nothing");
   Argument<bool> list_methods = p.flag("--list-methods", "print all methods");
+  Argument<bool> newer =
+      p.flag("--newer", "list also the methods that a newer SUNDIALS would bring");
   Argument<bool> list_scenes =
       p.flag("--list-scenes", "print the scene generators and their parameters");
   Argument<bool> csv = p.flag("--csv", "print lists as CSV");

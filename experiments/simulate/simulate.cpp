@@ -9,6 +9,10 @@
 //   simulate --scene cloth --explain
 //   simulate --list-methods
 //   simulate --list-scenes
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "experiments/kit/program.hpp"
@@ -23,24 +27,27 @@ namespace {
 const char* yes(bool holds) { return holds ? "yes" : "no"; }
 
 // Print the methods, or the scene generators with their parameters, as a table or as CSV.
-void print_methods(bool as_csv) {
+void print_methods(bool as_csv, bool with_newer) {
+  std::vector<Method> listed = methods();
+  if (with_newer) std::ranges::copy(newer_methods(), std::back_inserter(listed));
   if (as_csv) {
     Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
              "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
-             "takes_iterations", "summary", "source", "stock_of"});
-    for (const Method& m : methods()) {
+             "takes_iterations", "summary", "source", "stock_of", "needs_sundials"});
+    for (const Method& m : listed) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
               yes(m.is(Trait::symplectic)),
               yes(m.asks(Need::stiffness) || m.is(Trait::bounds_steps)),
               yes(m.is(Trait::accepts_massless)), yes(m.asks(Need::constant_stiffness)),
               yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
-              yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of);
+              yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of,
+              sundials_needed(m));
     }
     fmt::print("{}", csv.text());
     return;
   }
   fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", "name", "order", "family", "knob", "what it is");
-  for (const Method& m : methods()) {
+  for (const Method& m : listed) {
     fmt::print("{:<24} {:>5}  {:<12} {:<9}  {}\n", m.name, m.order, family_name(m.family),
                knob_name(m.knob), m.summary);
   }
@@ -67,7 +74,7 @@ void print_generators(bool as_csv) {
 
 int simulate(const Arguments& a) {
   if (a.list_methods) {
-    print_methods(a.csv);
+    print_methods(a.csv, a.newer);
     return done;
   }
   if (a.list_scenes) {

@@ -274,6 +274,8 @@ std::vector<std::string> methods_in(const TomlTable& file, const toml::table& ta
   if (!array || array->empty()) file.refuse("methods", "lists of one or more methods");
   for (const toml::node& node : *array) {
     const auto* name = node.as_string();
+    if (const std::string why = name ? why_not_built(name->get()) : ""; !why.empty())
+      file.fail("methods", why);
     if (!name || !find_method(name->get()))
       file.refuse("methods", fmt::format("lists of {}", kit::method_names()));
     if (std::ranges::find(methods, name->get()) != methods.end())

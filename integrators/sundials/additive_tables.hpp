@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdio>  // missing in ARKODE's header
+#include <cstdio>  // missing in the headers of ARKODE 6
 
 #include <arkode/arkode_butcher_dirk.h>
 #include <arkode/arkode_butcher_erk.h>

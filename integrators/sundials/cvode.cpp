@@ -6,7 +6,6 @@
 // Newton's method. The method cvode_bdf solves with the structured n x n matrix, cvode_bdf_klu the
 // stock way with KLU. Adams-Moulton, cvode_adams, has order 1 to 12 and is solved by fixed-point
 // iteration. All other settings are CVODE's defaults.
-#include <cvode/cvode.h>
 #include <fmt/format.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -24,7 +23,7 @@ class Cvode : public Library {
   Cvode(SystemRun& run, int formula, MakeMatrix make_matrix)
       : Library(run, make_matrix), memory_(check(CVodeCreate(formula, context()))) {
     auto* self = static_cast<Library*>(this);
-    check(CVodeSetErrHandlerFn(memory(), keep_message, self), "CVodeSetErrHandlerFn");
+    hear_errors(errors_of_cvode, memory());
     check(CVodeInit(memory(), right_hand_side, 0, y()), "CVodeInit");
     check(CVodeSetUserData(memory(), self), "CVodeSetUserData");
     check(CVodeSVtolerances(memory(), rtol(), atol()), "CVodeSVtolerances");

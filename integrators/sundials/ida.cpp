@@ -22,7 +22,6 @@
 #include <random>
 
 #include <fmt/format.h>
-#include <ida/ida.h>
 
 #include "integrators/sundials/library.hpp"
 #include "integrators/sundials/orders.hpp"
@@ -50,7 +49,7 @@ class Ida final : public Library {
   explicit Ida(SystemRun& run)
       : Library(run, make_matrix), rate_(clone(y())), memory_(check(IDACreate(context()))) {
     auto* self = static_cast<Library*>(this);
-    check(IDASetErrHandlerFn(ida(), keep_message, self), "IDASetErrHandlerFn");
+    hear_errors(errors_of_ida, ida());
     check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
     check(IDASetUserData(ida(), self), "IDASetUserData");
     check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");

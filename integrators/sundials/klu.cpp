@@ -50,7 +50,7 @@ class Klu final : public NewtonMatrix {
   int factorize() override {
     const bool pivots = !has_pivots_ && content().symbolic;
     const int flag = pivots ? choose_pivots() : SUNLinSolSetup(klu_.get(), entries_.get());
-    has_pivots_ = has_pivots_ || flag == SUNLS_SUCCESS;
+    has_pivots_ = has_pivots_ || flag == SUN_SUCCESS;
     return flag;
   }
 
@@ -61,7 +61,7 @@ class Klu final : public NewtonMatrix {
     content().numeric =
         sun_klu_factor(SM_INDEXPTRS_S(entries_.get()), SM_INDEXVALS_S(entries_.get()),
                        SM_DATA_S(entries_.get()), content().symbolic, &content().common);
-    return content().numeric ? SUNLS_SUCCESS : SUNLS_PACKAGE_FAIL_UNREC;
+    return content().numeric ? SUN_SUCCESS : SUN_ERR_EXT_FAIL;
   }
 
   int solve(N_Vector b, N_Vector x) override {

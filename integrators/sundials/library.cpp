@@ -102,9 +102,9 @@ int Library::set_matrix(double t, N_Vector y, bool jok, int* jcur, double gamma)
   });
 }
 
-void Library::keep_message(int, const char*, const char*, char* message, void* self) {
+void Library::keep_words(const char* words, void* self) noexcept {
   try {
-    static_cast<Library*>(self)->said_ = message;
+    static_cast<Library*>(self)->said_ = words;
   } catch (...) {  // no memory for a message: the flag alone is kept
   }
 }

@@ -104,15 +104,19 @@ class Library : public Formula {
   // system, and Newton's matrix I - gamma J of the implicit part, with a new K unless `jok`.
   static int right_hand_side(double t, N_Vector y, N_Vector rate, void* self);
   int set_matrix(double t, N_Vector y, bool jok, int* jcur, double gamma) noexcept;
-  // SUNDIALS' error handler: stores the words for the summary instead of printing them.
-  static void keep_message(int code, const char* module, const char* function, char* message,
-                           void* self);
+  // Keeps the words of SUNDIALS' errors for the summary instead of printing them. `errors` is that
+  // of the memory's library (versions.hpp).
+  template <class Errors>
+  void hear_errors(Errors errors, void* memory) {
+    check(set_error_handler<keep_words>(errors, memory, context(), this), "the error handler");
+  }
 
   // Ends the run at t [s] with the cause of the library's flag, or with this cause.
   Outcome failure(int flag, double t) { return failure(named_cause(flag, t), flag_name(flag), t); }
   Outcome failure(Cause cause, const std::string& flag, double t);
 
  private:
+  static void keep_words(const char* words, void* self) noexcept;
   // The cause that the flag names, with two corrections. If forces are not finite, a library may
   // blame convergence or its small steps, and a later force instead of the first. If it says that
   // the end is too close with time left, the weights of the first step overflow.

@@ -12,10 +12,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <arkode/arkode_mristep.h>
 #include <fmt/format.h>
 
-#include "integrators/sundials/arkode.hpp"
+#include "integrators/sundials/arkode_stepper.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -54,18 +53,17 @@ class Mri final : public Library {
         fast_(check(ARKStepCreate(stiff_rate, nullptr, 0, y(), context()))) {
     auto* self = static_cast<Library*>(this);
     const ButcherTable table(check(ARKodeButcherTable_LoadERK(pair.fast)));
-    check(ARKStepSetUserData(fast_.get(), self), "ARKStepSetUserData");
-    check(ARKStepSetErrHandlerFn(fast_.get(), keep_message, self), "ARKStepSetErrHandlerFn");
+    check(ARKodeSetUserData(fast_.get(), self), "ARKodeSetUserData");
+    hear_errors(errors_of_arkstep, fast_.get());
     check(ARKStepSetTables(fast_.get(), table->q, table->p, nullptr, table.get()),
           "ARKStepSetTables");
-    check(ARKStepSetMaxNumSteps(fast_.get(), -1), "ARKStepSetMaxNumSteps");
+    check(ARKodeSetMaxNumSteps(fast_.get(), -1), "ARKodeSetMaxNumSteps");
     MRIStepInnerStepper inner = nullptr;
-    check(ARKStepCreateMRIStepInnerStepper(fast_.get(), &inner),
-          "ARKStepCreateMRIStepInnerStepper");
+    check(ARKodeCreateMRIStepInnerStepper(fast_.get(), &inner), "ARKodeCreateMRIStepInnerStepper");
     inner_.reset(inner);
     slow_.reset(check(MRIStepCreate(soft_rate, nullptr, 0, y(), inner, context())));
-    check(MRIStepSetUserData(slow_.get(), self), "MRIStepSetUserData");
-    check(MRIStepSetErrHandlerFn(slow_.get(), keep_message, self), "MRIStepSetErrHandlerFn");
+    check(set_mri_user_data(slow_.get(), self), "set_mri_user_data");
+    hear_errors(errors_of_mristep, slow_.get());
     const Coupling coupling(check(MRIStepCoupling_LoadTable(pair.slow)));
     check(MRIStepSetCoupling(slow_.get(), coupling.get()), "MRIStepSetCoupling");
   }
@@ -86,15 +84,15 @@ class Mri final : public Library {
 
   void set_step_size(double h) override {
     fast_step_ = h / fast_steps_;
-    check(ARKStepSetFixedStep(fast_.get(), fast_step_), "ARKStepSetFixedStep");
-    check(MRIStepSetFixedStep(slow_.get(), h), "MRIStepSetFixedStep");
+    check(ARKodeSetFixedStep(fast_.get(), fast_step_), "ARKodeSetFixedStep");
+    check(set_mri_step(slow_.get(), h), "set_mri_step");
   }
 
   int take_step(double t_stop, double& t) override {
     // Small steps below the spacing of times would never end.
     const double furthest = std::max(std::abs(t), std::abs(t_stop));
     if (!(furthest + fast_step_ / 2 > furthest)) return ARK_INNERSTEP_FAIL;
-    return MRIStepEvolve(slow_.get(), t_stop, y(), &t, ARK_ONE_STEP);
+    return evolve_mri(slow_.get(), t_stop, y(), &t, ARK_ONE_STEP);
   }
 
   // e = (0, M^-1 f_soft).
@@ -113,13 +111,13 @@ class Mri final : public Library {
 
   OwnCounts own_counts() const override {
     OwnCounts own;
-    check(MRIStepGetNumSteps(slow_.get(), &own.steps), "MRIStepGetNumSteps");
+    check(get_mri_steps(slow_.get(), &own.steps), "get_mri_steps");
     return own;
   }
 
   Cause cause_of(int flag) const override { return cause_of_arkode(flag); }
   std::string flag_name(int flag) const override {
-    const std::unique_ptr<char, decltype(&std::free)> text(MRIStepGetReturnFlagName(flag),
+    const std::unique_ptr<char, decltype(&std::free)> text(ARKodeGetReturnFlagName(flag),
                                                            std::free);
     return fmt::format("ARKODE {}", text ? text.get() : "");
   }
@@ -127,9 +125,9 @@ class Mri final : public Library {
   const System &stiff_, &soft_;
   double fast_steps_ = 1;  // in each step
   double fast_step_ = 0;   // [s]
-  std::unique_ptr<void, FreeMemoryBy<ARKStepFree>> fast_;
+  std::unique_ptr<void, FreeMemoryBy<ARKodeFree>> fast_;
   InnerStepper inner_;
-  std::unique_ptr<void, FreeMemoryBy<MRIStepFree>> slow_;
+  std::unique_ptr<void, FreeMemoryBy<free_mri>> slow_;
 };
 
 template <int order>

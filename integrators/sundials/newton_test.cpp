@@ -26,14 +26,14 @@ int NewtonTest::has_converged(SUNNonlinearSolver solver, N_Vector, N_Vector corr
                               N_Vector weight, void* user) {
   auto& self = *static_cast<NewtonTest*>(user);
   int iteration = 0;
-  if (SUNNonlinSolGetCurIter(solver, &iteration) != SUN_NLS_SUCCESS) return SUN_NLS_CONV_RECVR;
+  if (SUNNonlinSolGetCurIter(solver, &iteration) != SUN_SUCCESS) return SUN_NLS_CONV_RECVR;
   const double size = N_VWrmsNorm(correction, weight);
   const double theta = size / self.last_size_;
   self.last_size_ = size;
-  if (size <= negligible) return SUN_NLS_SUCCESS;
+  if (size <= negligible) return SUN_SUCCESS;
   if (iteration == 0) return SUN_NLS_CONTINUE;
   if (!(theta < 1)) return SUN_NLS_CONV_RECVR;
-  return theta / (1 - theta) * size <= largest_rest ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+  return theta / (1 - theta) * size <= largest_rest ? SUN_SUCCESS : SUN_NLS_CONTINUE;
 }
 
 }  // namespace qddot::sundials

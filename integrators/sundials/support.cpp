@@ -12,7 +12,7 @@ void check(int flag, const char* call) {
 
 Context make_context() {
   SUNContext context = nullptr;
-  check(SUNContext_Create(nullptr, &context), "SUNContext_Create");
+  check(SUNContext_Create(SUN_COMM_NULL, &context), "SUNContext_Create");
   return Context(context);
 }
 

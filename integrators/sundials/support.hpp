@@ -2,13 +2,14 @@
 
 #include <memory>
 #include <new>
+#include <type_traits>
 
 #include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nonlinearsolver.h>
 
+#include "integrators/sundials/versions.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::sundials {
@@ -25,7 +26,7 @@ T* check(T* pointer) {
 struct FreeContext {
   void operator()(SUNContext context) const { SUNContext_Free(&context); }
 };
-using Context = std::unique_ptr<_SUNContext, FreeContext>;
+using Context = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeContext>;
 Context make_context();
 
 // Frees a SUNDIALS object of type T by its own function.

@@ -90,6 +90,7 @@ Options options_of(const py::dict& given) {
 
 void add_methods(py::module_& module) {
   module.def("methods", &records);
+  module.def("why_not_built", &why_not_built);
   module.def("options", &option_records);
 }
 

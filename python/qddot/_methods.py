@@ -55,6 +55,9 @@ def method(name: str) -> Method:
     """The method of that name. If there is none, raises a ValueError that names all methods."""
     found = _all().get(name) if isinstance(name, str) else None
     if found is None:
+        why = _qddot.why_not_built(name) if isinstance(name, str) else ""
+        if why:
+            raise ValueError(why)
         nearest = hint(name, _all()) if isinstance(name, str) else ""
         raise ValueError(f"{name!r} is no method{nearest}; there are {', '.join(_all())}")
     return found

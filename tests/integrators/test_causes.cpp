@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(a_motion_that_collapses_ends_there_and_fails_the_error_test
       // Some follow it up to a speed that is none, and an explicit method may step beyond 0 and is
       // not allowed another try.
       BOOST_TEST((says(r, Cause::error_test, method) || says(r, Cause::force, method) ||
-                  r.summary.outcome == Outcome::diverged),
+                  says(r, Cause::relaxation, method) || r.summary.outcome == Outcome::diverged),
                  r.summary.message);
     }
   }
@@ -85,7 +85,12 @@ BOOST_DATA_TEST_CASE(a_long_step_on_a_strongly_nonlinear_scene_does_not_converge
                      methods_of(Family::sundials, Knob::step_size), method) {
   const Problem p = hammock(2);
   const Run r = run(method, p, 100, {.step_size = 10});
-  BOOST_TEST(says(r, Cause::convergence, method), r.summary.message);
+  if (method.is(Trait::implicit)) {
+    BOOST_TEST(says(r, Cause::convergence, method), r.summary.message);
+  } else {
+    BOOST_TEST((says(r, Cause::force, method) || r.summary.outcome == Outcome::diverged),
+               r.summary.message);
+  }
   BOOST_TEST(r.state.t < 100);
 }
 

@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(explicit_methods_hold_their_steps_to_the_limit_of_the_stiff
 
 BOOST_AUTO_TEST_CASE(the_error_estimate_of_order_8_sees_forces_that_depend_on_time_alone) {
   // For y' = t^k the formulas err by sum_i b_i c_i^k - 1/(k + 1).
-  const auto defect = [](const ARKodeButcherTableMem& table, const realtype* b, int k) {
+  const auto defect = [](const ARKodeButcherTableMem& table, const double* b, int k) {
     double sum = -1. / (k + 1);
     for (int i = 0; i < table.stages; ++i) sum += b[i] * std::pow(table.c[i], k);
     return std::abs(sum);

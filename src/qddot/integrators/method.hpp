@@ -17,6 +17,9 @@ struct Splitting;
 struct NystromPair;
 struct SymmetricFormula;
 
+// Makes the stepper of a run (see create in base/fixed_steps.hpp).
+using MakeStepper = std::unique_ptr<Stepper> (*)(SystemRun&);
+
 enum class Family { hand_written, sundials };
 // The option by which a method trades speed for accuracy.
 enum class Knob { step_size, rtol };
@@ -81,8 +84,10 @@ struct Method {
   const Splitting* splitting = nullptr;                 // base/kick_drift.hpp
   const NystromPair* nystrom_pair = nullptr;            // base/nystrom_stages.hpp
   const SymmetricFormula* symmetric_formula = nullptr;  // base/symmetric_formula.hpp
-  // Makes the stepper of a run (see create in base/fixed_steps.hpp).
-  std::unique_ptr<Stepper> (*make)(SystemRun&) = nullptr;
+  // The oldest SUNDIALS that has the method, 70100 for 7.1; 0 for all that qddot builds with.
+  int needs_sundials = 0;
+  // nullptr if this build's SUNDIALS is older.
+  MakeStepper make = nullptr;
 
   bool is(Trait trait) const { return traits.has(trait); }
   bool asks(Need need) const { return needs.has(need); }

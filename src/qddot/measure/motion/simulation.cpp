@@ -14,6 +14,7 @@ namespace qddot {
 
 const Method& method(std::string_view name) {
   if (const Method* found = find_method(name)) return *found;
+  if (const std::string why = why_not_built(name); !why.empty()) throw std::invalid_argument(why);
   std::vector<std::string> all;
   for (const Method& other : methods()) all.push_back(other.name);
   const std::string nearest = nearest_name(name, all);
