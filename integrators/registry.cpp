@@ -75,9 +75,6 @@
   METHOD(arkode_sprk6)             \
   METHOD(arkode_sprk8)             \
   METHOD(arkode_sprk10)            \
-  METHOD(arkode_relaxed4)          \
-  METHOD(arkode_relaxed5)          \
-  METHOD(arkode_relaxed6)          \
   METHOD(ida)                      \
   METHOD(ida_klu)                  \
   METHOD(cvode_bdf)                \

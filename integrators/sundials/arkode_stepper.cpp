@@ -86,12 +86,11 @@ std::string ArkodeStepper::flag_name(int flag) const {
 
 Cause cause_of_arkode(int flag) {
   static constexpr std::pair<int, Cause> causes[] = {
-      {ARK_ERR_FAILURE, Cause::error_test},   {ARK_TOO_MUCH_ACC, Cause::accuracy},
-      {ARK_TOO_CLOSE, Cause::end_too_close},  {ARK_CONV_FAILURE, Cause::convergence},
-      {ARK_LSETUP_FAIL, Cause::setup},        {ARK_FIRST_RHSFUNC_ERR, Cause::first_force},
-      {ARK_RHSFUNC_FAIL, Cause::force},       {ARK_REPTD_RHSFUNC_ERR, Cause::force},
-      {ARK_UNREC_RHSFUNC_ERR, Cause::force},  {ARK_INNERSTEP_FAIL, Cause::fast_steps},
-      {flag_of_relaxation, Cause::relaxation}};
+      {ARK_ERR_FAILURE, Cause::error_test},  {ARK_TOO_MUCH_ACC, Cause::accuracy},
+      {ARK_TOO_CLOSE, Cause::end_too_close}, {ARK_CONV_FAILURE, Cause::convergence},
+      {ARK_LSETUP_FAIL, Cause::setup},       {ARK_FIRST_RHSFUNC_ERR, Cause::first_force},
+      {ARK_RHSFUNC_FAIL, Cause::force},      {ARK_REPTD_RHSFUNC_ERR, Cause::force},
+      {ARK_UNREC_RHSFUNC_ERR, Cause::force}, {ARK_INNERSTEP_FAIL, Cause::fast_steps}};
   return cause_in(causes, flag);
 }
 

@@ -16,7 +16,7 @@ class ArkodeStepper : public Library {
  protected:
   ArkodeStepper(SystemRun& run, MakeMatrix make_matrix, const System& implicit_part);
 
-  // Keeps the memory of a stepper; to be called once.
+  // Keeps the memory of a stepper, to be called once.
   void keep(void* memory);
   // Gives it the tolerances, for steps that it chooses and for Newton's iteration.
   void set_tolerances();

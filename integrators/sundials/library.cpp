@@ -136,9 +136,10 @@ Cause Library::named_cause(int flag, double t) {
       t_stop_ - t > 4 * machine_epsilon * std::max(std::abs(t), std::abs(t_stop_));
   if (cause == Cause::end_too_close && has_time) return Cause::accuracy;
   if (is_finite_) return cause;
-  if (cause == Cause::convergence || cause == Cause::fast_steps) return Cause::force;
-  if (cause == Cause::force && counts().force_evaluations == 1) return Cause::first_force;
-  return cause;
+  const bool is_force =
+      cause == Cause::force || cause == Cause::convergence || cause == Cause::fast_steps;
+  if (is_force && counts().force_evaluations == 1) return Cause::first_force;
+  return is_force ? Cause::force : cause;
 }
 
 Outcome Library::failure(Cause cause, const std::string& flag, double t) {

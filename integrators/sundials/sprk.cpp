@@ -3,8 +3,10 @@
 //   v_i = v_{i-1} + h b_i M^-1 f(q_{i-1})
 //   q_i = q_{i-1} + h a_i v_i,   i = 1 ... s
 //   q_{n+1} = q_s,   v_{n+1} = v_s
-// ARKODE evaluates f in all s stages, also where b_i is zero. The table of order 2 is that of
-// position_verlet, so that SUNDIALS' run of a formula can be laid over a hand-written one.
+// ARKODE evaluates f in all s stages, also where b_i is zero. A force that depends on time would be
+// taken at t_n + (b_1 + ... + b_i) h, which is not the time of q_{i-1}: the order falls to 1. The
+// table of order 2 is that of position_verlet, so that SUNDIALS' run of a formula can be laid over
+// a hand-written one.
 #include <fmt/format.h>
 
 #include "integrators/sundials/arkode_stepper.hpp"
@@ -94,7 +96,7 @@ Method sprk() {
           .family = Family::sundials,
           .stability_limit = table.limit,
           .traits = SetOf<Trait>{Trait::symplectic}.with(Trait::reversible, table.is_symmetric),
-          .needs = {Need::conservative},
+          .needs = {Need::conservative, Need::autonomous},
           .needs_sundials = 70100,
           .make = make_sprk<which>};
 }

@@ -119,12 +119,6 @@ inline void free_erk(void** memory) { ARKodeFree(memory); }
 inline void free_mri(void** memory) { ARKodeFree(memory); }
 #endif
 
-#if QDDOT_SUNDIALS < 70100
-inline constexpr int flag_of_relaxation = 1;  // of no failure
-#else
-inline constexpr int flag_of_relaxation = ARK_RELAX_FAIL;
-#endif
-
 #if QDDOT_SUNDIALS < 70200
 inline constexpr auto ARKodeCreateMRIStepInnerStepper = ARKStepCreateMRIStepInnerStepper;
 #endif

@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(a_motion_that_collapses_ends_there_and_fails_the_error_test
       // Some follow it up to a speed that is none, and an explicit method may step beyond 0 and is
       // not allowed another try.
       BOOST_TEST((says(r, Cause::error_test, method) || says(r, Cause::force, method) ||
-                  says(r, Cause::relaxation, method) || r.summary.outcome == Outcome::diverged),
+                  r.summary.outcome == Outcome::diverged),
                  r.summary.message);
     }
   }
@@ -115,7 +115,8 @@ BOOST_DATA_TEST_CASE(a_force_or_stiffness_that_is_no_number_is_named_from_the_fi
                      methods_of(Family::sundials), method) {
   const Problem p = hammock(2);
   const auto system = make_mass_spring(p.network);
-  for (const int first_bad : {1, 30}) {
+  // A step has up to 36 forces, and a run of 100 steps at least one in each.
+  for (const int first_bad : {1, 90}) {
     BOOST_TEST_CONTEXT(method.name << " from the force " << first_bad << " on") {
       Relay relay(*system);
       relay.after_force = [&, calls = 0](const ConstVec&, MutableVec f) mutable {
@@ -125,7 +126,8 @@ BOOST_DATA_TEST_CASE(a_force_or_stiffness_that_is_no_number_is_named_from_the_fi
       BOOST_TEST(says(r, first_bad == 1 ? Cause::first_force : Cause::force, method),
                  r.summary.message);
       for (const char* library : {"ARKODE", "CVODE", "IDA"}) {
-        const bool is_its = method.summary.find(library) != std::string::npos;
+        const bool is_its =
+            method.summary.find(std::string("SUNDIALS ") + library) != std::string::npos;
         BOOST_TEST(contains(r.summary.message, {std::string("(") + library + " "}) == is_its);
       }
       BOOST_TEST((r.state.t > 0) == (first_bad > 1));

@@ -149,7 +149,11 @@ BOOST_DATA_TEST_CASE(one_step_methods_run_backwards_to_their_start_where_the_reg
   // 400 steps (of up to 17 substeps) on numbers of 10, each rounding by 1e-15, which the motion may
   // enlarge some ten times. Newton's iteration of ARKODE leaves 1e-10 a step. Others are off by
   // 1e-5 and more.
-  const Options options{.step_size = 0.02, .solve_tolerance = 1e-13};
+  // Splittings of high order that are not reversible come back nearly; at longer steps they miss as
+  // clearly.
+  const bool misses_little =
+      method.is(Trait::symplectic) && !method.is(Trait::reversible) && method.order >= 4;
+  const Options options{.step_size = misses_little ? 0.08 : 0.02, .solve_tolerance = 1e-13};
   State state = p.initial;
   for (int i = 0; i < 2; ++i) {
     state = run(method, *system, {0, state.q, state.v}, 4, options).state;

@@ -1,6 +1,7 @@
 // Methods that take the forces of stiff springs apart.
 #include <boost/test/unit_test.hpp>
 
+#include "integrators/sundials/version.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "tests/integrators/motions.hpp"
 #include "tests/integrators/scenes.hpp"
@@ -76,14 +77,16 @@ BOOST_AUTO_TEST_CASE(soft_forces_are_evaluated_a_few_times_a_step_and_stiff_ones
     const Split& split = *system->split();
     const double m = std::ceil(frequency_bound(*split.stiff, p.initial.q) /
                                frequency_bound(*split.soft, p.initial.q));
-    // Stages of the slow and of the fast table.
+    // Stages of the slow and of the fast table. From SUNDIALS 7.1 on, the last stage of the fast
+    // table of order 3 is the first one of the next step, and no soft force is evaluated at the
+    // start beside those of the stages.
+    constexpr bool is_saving = QDDOT_SUNDIALS >= 70100;
     for (const auto& [name, slow, fast] :
-         {std::tuple("arkode_mri3", 3, 4), {"arkode_mri4", 5, 5}}) {
+         {std::tuple("arkode_mri3", 3, is_saving ? 3 : 4), {"arkode_mri4", 5, 5}}) {
       const auto [soft, stiff] = forces_of_20_steps(name, p);
       BOOST_TEST_CONTEXT(name << " with m = " << m << ": " << soft << " soft, " << stiff
                               << " stiff") {
-        // One evaluation at the start, beside those of the stages.
-        BOOST_TEST(soft == slow * 20 + 1);
+        BOOST_TEST(soft == slow * 20 + (is_saving ? 0 : 1));
         // Inner steps of h/m go from each stage to the next. ARKODE evaluates one more force at the
         // end of some of them, once a step, and at the start.
         const double small_steps = 20 * slow * std::ceil(m / slow);
