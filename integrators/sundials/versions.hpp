@@ -1,7 +1,7 @@
 #pragma once
 
-// What differs between SUNDIALS 6.4 and 7.x. The other files are written for the newest: here,
-// its names are given to what older versions have.
+// The differences between SUNDIALS 6.4 and 7.x. The other files are written for the newest: here,
+// its names are given to the functions of older versions.
 
 #include <cstdio>  // missing in the headers of ARKODE 6
 
@@ -100,9 +100,9 @@ inline constexpr auto evolve_mri = MRIStepEvolve;
 inline constexpr auto get_mri_steps = MRIStepGetNumSteps;
 inline constexpr auto set_mri_step = MRIStepSetFixedStep;
 inline constexpr auto set_mri_user_data = MRIStepSetUserData;
-inline void ARKodeFree(void** memory) { ARKStepFree(memory); }
-inline void free_erk(void** memory) { ERKStepFree(memory); }
-inline void free_mri(void** memory) { MRIStepFree(memory); }
+inline constexpr auto ARKodeFree = ARKStepFree;
+inline constexpr auto free_erk = ERKStepFree;
+inline constexpr auto free_mri = MRIStepFree;
 #else
 inline constexpr auto evolve_erk = ARKodeEvolve;
 inline constexpr auto get_erk_steps = ARKodeGetNumSteps;
@@ -115,8 +115,8 @@ inline constexpr auto evolve_mri = ARKodeEvolve;
 inline constexpr auto get_mri_steps = ARKodeGetNumSteps;
 inline constexpr auto set_mri_step = ARKodeSetFixedStep;
 inline constexpr auto set_mri_user_data = ARKodeSetUserData;
-inline void free_erk(void** memory) { ARKodeFree(memory); }
-inline void free_mri(void** memory) { ARKodeFree(memory); }
+inline constexpr auto free_erk = ARKodeFree;
+inline constexpr auto free_mri = ARKodeFree;
 #endif
 
 #if QDDOT_SUNDIALS < 70200

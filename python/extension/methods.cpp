@@ -22,8 +22,7 @@ constexpr std::array trait_names = {"implicit",        "linearly_implicit", "sym
                                     "cancels_torques", "accepts_massless",  "interpolates",
                                     "bounds_steps",    "reversible",        "remembers_steps"};
 constexpr std::array need_names = {"stiffness", "constant_stiffness", "split_forces",
-                                   "discrete_gradient", "laplacian", "conservative",
-                                   "autonomous"};
+                                   "discrete_gradient", "laplacian"};
 
 py::tuple names_of_options(const Method& method) {
   py::list taken;

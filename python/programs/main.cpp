@@ -1,9 +1,8 @@
 // All programs of the wheel in one: it is the one by whose name it is called, or that its first
 // argument names.
 #include <cstdio>
+#include <each_program.hpp>  // QDDOT_EACH_PROGRAM, by CMake
 #include <string_view>
-
-#include "each_program.hpp"
 
 #define QDDOT_DECLARE(name) int main_of_##name(int argc, char** argv);
 QDDOT_EACH_PROGRAM(QDDOT_DECLARE)

@@ -2,13 +2,23 @@
 
 import ctypes
 import os
+import shutil
 import subprocess
 import tempfile
+import unittest
 
 import numpy as np
 
+try:
+    import scipy.sparse
+except ImportError:
+    scipy = None
+
 import qddot
 from programs import table, write
+
+
+needs_scipy = unittest.skipUnless(scipy, "it needs SciPy")
 
 
 def read_table(path):
@@ -106,6 +116,8 @@ def compiled(source):
     """A C library of that source, loaded by ctypes; it stays as long as the process."""
     folder = tempfile.mkdtemp()
     path, made = write(f"{folder}/library.c", source), f"{folder}/library.so"
+    if not shutil.which(os.environ.get("CC", "cc")):
+        raise unittest.SkipTest("it needs a C compiler")
     words = [os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", path, "-o", made]
     subprocess.run(words, check=True)
     return ctypes.CDLL(made)

@@ -3,10 +3,10 @@
 import unittest
 
 import numpy as np
-import scipy.sparse
 
 import problems
 import qddot
+from problems import needs_scipy, scipy
 
 # A saddle in turned axes: a valley of 4 N/m along one, a hill of 9 N/m along the other.
 AXES = np.array([[0.6, -0.8], [0.8, 0.6]])
@@ -39,6 +39,7 @@ def system(k, push, mass=2.0, **given):
 
 
 class LinearSystems(unittest.TestCase):
+    @needs_scipy
     def test_exact_is_the_motion_at_every_step(self):
         for k, push, start in (
             (ROW, PUSH, (np.linspace(-1, 1, 5), np.cos(np.arange(5)))),
@@ -91,6 +92,7 @@ class LinearSystems(unittest.TestCase):
             end = qddot.solve(own, "semi_implicit_euler", **run).or_raise()
             self.assertEqual((end.counts.factorizations, len(calls)), (times, times))
 
+    @needs_scipy
     def test_what_is_not_linear_is_refused(self):
         ones, forces = np.ones(2), (problems.duffing_force, problems.duffing_potential)
         varies = qddot.System(ones, *forces, problems.duffing_stiffness)

@@ -156,6 +156,7 @@ class Systems(Programs):
 
 
 class Matrices(unittest.TestCase):
+    @problems.needs_scipy
     def test_forces_of_a_scene_are_the_gradient_of_its_energy(self):
         for dimension in (1, 2, 3):
             scene = problems.random_scene(4, dimension).replace(quartic=50.0)
@@ -199,6 +200,7 @@ class Matrices(unittest.TestCase):
         a = (after.v - sol.v[1]) / h
         self.assertLess(np.max(np.abs(a - f / cloth.mass[:, None])), 1e-3 * np.abs(a).max())
 
+    @problems.needs_scipy
     def test_other_shapes_are_refused(self):
         for call in (CLOTH.force, CLOTH.potential, CLOTH.stiffness_matrix):
             sentence = r"q: its shape is \(3, 3\); allowed .* \(16, 3\) or \(48\)"

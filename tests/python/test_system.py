@@ -4,10 +4,9 @@ import ctypes
 import unittest
 
 import numpy as np
-import scipy.sparse
-
 import problems
 import qddot
+from problems import needs_scipy, scipy
 
 SECONDS = 0.2
 
@@ -36,19 +35,21 @@ class OwnForces(unittest.TestCase):
                 self.assertLess(abs(a.energy.total[-1] - b.energy.total[-1]), 1e-6)
 
     def test_c_functions_are_the_callables(self):
-        import cffi
-
         library = problems.compiled(problems.DUFFING_C)
         library.potential.restype = ctypes.c_double
-        ffi = cffi.FFI()
-        ffi.cdef(
-            "void force(const double*, double*, int64_t); double potential(const double*, int64_t);"
-        )
-        other = ffi.dlopen(library._name)
-        cases = {
-            "ctypes": (library.force, library.potential),
-            "cffi": (ffi.addressof(other, "force"), ffi.addressof(other, "potential")),
-        }
+        cases = {"ctypes": (library.force, library.potential)}
+        try:
+            import cffi
+        except ImportError:
+            pass
+        else:
+            ffi = cffi.FFI()
+            ffi.cdef(
+                "void force(const double*, double*, int64_t);"
+                "double potential(const double*, int64_t);"
+            )
+            other = ffi.dlopen(library._name)
+            cases["cffi"] = ffi.addressof(other, "force"), ffi.addressof(other, "potential")
         try:
             import numba
         except ImportError:
@@ -122,6 +123,7 @@ class OwnForces(unittest.TestCase):
                     call(systems["potential"])
                 call(systems["stiffness"])
 
+    @needs_scipy
     def test_stiffness_in_every_form(self):
         chain = problems.Chain(6)
         q0, v0 = chain.start()
