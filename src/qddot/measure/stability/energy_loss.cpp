@@ -113,7 +113,9 @@ std::string loss_warning(const Method& method, const Options& options, const Mod
     // Few looks may see more acceleration than speed.
     if (!omegas.empty()) own = std::min(own, highest);
   }
-  if (own > 0) omegas.insert(omegas.begin(), own);
+  // A repeated run that time ends at once has seen no speed.
+  const bool has_own = options.step_size * own > 0;
+  if (has_own) omegas.insert(omegas.begin(), own);
   if (omegas.empty() || std::isnan(loss_rate(method, options, omegas.back())))
     return words + ": lower --step-size";
   if (keeps(method, options, omegas, until)) {
@@ -131,7 +133,7 @@ std::string loss_warning(const Method& method, const Options& options, const Mod
   }
   words +=
       fmt::format(": {} damps like a damping ratio of {}", method.name, fmt::join(ratios, " and "));
-  const double finer = keeping_step(method, options, own, summary.energy_loss);
+  const double finer = has_own ? keeping_step(method, options, own, summary.energy_loss) : 0;
   if (finer > 0) words += fmt::format("; a step of {:.2g} s takes about a hundredth", finer);
   std::vector<std::string> others;
   for (const Method& other : methods()) {
