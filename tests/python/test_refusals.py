@@ -1,6 +1,7 @@
 """Checks that wrong arguments are refused in one sentence that says what is allowed, and that
 allowed ones have their meaning."""
 
+import importlib.util
 import os
 import unittest
 from unittest import mock
@@ -379,6 +380,7 @@ class Meaning(Programs):
         self.assertEqual({chart.best(x).method for x in (0.5, 1e-3)}, {"blanes_moan6"})
         self.assertEqual(chart.record["judged_by"], "energy")
 
+    @unittest.skipUnless(importlib.util.find_spec("matplotlib"), "it needs matplotlib")
     def test_a_chart_is_its_points(self):
         seen, methods = [], ["verlet", "implicit_midpoint"]
         chart = qddot.work_precision(CLOTH, 0.1, methods, point_limit=0.05, progress=seen.append)
