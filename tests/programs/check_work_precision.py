@@ -406,9 +406,9 @@ class Motions(Programs):
         self.assertEqual(read(rows[1]["file"]), "mine")
 
     def test_an_interruption_leaves_the_motions_of_before(self):
-        self.keep("--runs 1 --frames 3")
+        self.keep("--runs 1000 --frames 3")
         before = read("motions.csv"), sorted(os.listdir("motions"))
-        # So soon that no run is made, and whether the program has begun with them or not.
+        # So soon that fewer runs are made than there are, whether the program has begun or not.
         for limit in ("1e-4", "0.05"):
             ended = run(f"motions --scene pendulum --out . --frames 10000 --time-limit {limit}")
             self.assertEqual(ended.returncode, 3)
