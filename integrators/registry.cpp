@@ -59,6 +59,8 @@
   METHOD(arkode_erk5)              \
   METHOD(arkode_erk6)              \
   METHOD(arkode_erk8)              \
+  METHOD(arkode_ssp3)              \
+  METHOD(arkode_ssp4)              \
   METHOD(arkode_imex3)             \
   METHOD(arkode_imex4)             \
   METHOD(arkode_imex5)             \

@@ -110,9 +110,9 @@ bool has_reference(const Task& task, const std::string& folder) {
   const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("key")) return false;
   const auto &there = json["key"], &about = task.key.at("about");
-  return there.value("scene_hash", "") == about.at("scene") &&
-         there.value("until", 0.0) == about.at("until") &&
-         there.value("source_hash", "") == task.key.at("build").at("code");
+  return there.value("scene_hash", "") == about.at("scene").get<std::string>() &&
+         there.value("until", 0.0) == about.at("until").get<double>() &&
+         there.value("source_hash", "") == task.key.at("build").at("code").get<std::string>();
 }
 
 }  // namespace

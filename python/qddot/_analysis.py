@@ -60,7 +60,8 @@ class Modes:
     @property
     def omega(self) -> Floats:
         """w [rad/s], or minus the growth rate [1/s] of a growing mode."""
-        return np.copysign(np.sqrt(np.abs(self.squares)), self.squares)
+        rates: Floats = np.copysign(np.sqrt(np.abs(self.squares)), self.squares)
+        return rates
 
     def __repr__(self) -> str:
         few = ", ".join(f"{w:.5g}" for w in self.omega[:5])

@@ -301,7 +301,7 @@ class Scene:
         coordinate c of node i. Rows and columns of pinned nodes are zero. Nothing is left out, as
         model() does. Raises ImportError if SciPy is missing."""
         require_package("scipy", "stiffness_matrix makes a matrix of")
-        import scipy.sparse  # type: ignore[import]
+        import scipy.sparse  # type: ignore
 
         data, rows, first = self._as_drawn().stiffness(self._places(q))
         n = self.positions.size

@@ -56,7 +56,8 @@ def convergence(
     exact.require(of, q0, v0)
     if until is not None and until != exact.until:
         raise ValueError(f"reference: it is that of {exact.until:g} s, and until is {until:g} s")
-    steps = number(step_size, "step_size") / 2.0 ** np.arange(count(halvings, "halvings") + 1)
+    halved = 2.0 ** -np.arange(count(halvings, "halvings") + 1.0)
+    steps = np.asarray(number(step_size, "step_size") * halved, dtype=np.float64)
     q, v = np.full(len(steps), np.nan), np.full(len(steps), np.nan)
     for i, h in enumerate(steps):
         solution = solve(of, method, step_size=float(h), until=exact.until, q0=q0, v0=v0)

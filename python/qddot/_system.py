@@ -193,7 +193,7 @@ def callable_or_address(function: Any, name: str, count: int) -> Any:
             raise ValueError(f"{name}: the C function is a null pointer")
         return address
     if type(function).__module__ == "_cffi_backend":
-        import _cffi_backend  # type: ignore[import]
+        import _cffi_backend  # type: ignore
 
         kind = _cffi_backend.FFI().typeof(function)
         if kind.kind != "function" or len(kind.args) != count + 1:

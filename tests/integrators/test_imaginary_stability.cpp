@@ -5,6 +5,7 @@
 
 #include "integrators/sundials/arkode.hpp"
 #include "integrators/sundials/imaginary_stability.hpp"
+#include "integrators/sundials/low_storage.hpp"
 #include "integrators/sundials/prince_dormand.hpp"
 #include "tests/integrators/runs.hpp"
 
@@ -59,7 +60,20 @@ double exponential_series(int p, double y) {
   return std::abs(sum);
 }
 
+double amplification(const ARKodeButcherTableMem& table, double y) {
+  return std::abs(stability_function(table, {0, y}));
+}
+
 constexpr double growth = 1e-3, resolution = 1e-3;  // as imaginary_stability() says
+
+// A method that averages steps of explicit Euler, with its R and stages.
+struct Averaging {
+  const char* method;
+  int order, stages;
+  std::complex<double> (*r)(std::complex<double>);
+};
+const Averaging averaging[] = {{"arkode_ssp3", 3, 4, growth_of_ssp3},
+                               {"arkode_ssp4", 4, 10, growth_of_ssp4}};
 
 // A chain of 100 masses that starts at rest, drawn as its slowest mode, whose frequency is
 // 1/64 of w_max: the others move by rounding alone.
@@ -119,6 +133,52 @@ BOOST_AUTO_TEST_CASE(up_to_its_limit_no_table_lets_a_vibration_grow_and_beyond_i
     }
   }
 }
+
+BOOST_AUTO_TEST_CASE(averaging_methods_have_the_order_of_their_growth) {
+  for (const auto& [method, order, stages, r] : averaging) {
+    BOOST_TEST_CONTEXT(method) {
+      // R(z) = exp(z) + c z^(p + 1) + ...: half of z has a 2^(p + 1)th of the error.
+      const auto error = [&](double y) { return std::abs(r({0, y}) - std::polar(1., y)); };
+      const double observed = std::log2(error(0.2) / error(0.1)) - 1;
+      BOOST_TEST(std::abs(observed - order) < 0.1);
+      const double limit = qddot::sundials::imaginary_stability(r, stages);
+      BOOST_TEST(std::abs(r({0, limit})) < 1 + growth);
+      BOOST_TEST(std::abs(r({0, limit + 1.01 * resolution})) > 1 + growth);
+      BOOST_TEST(limit > 2);
+    }
+  }
+}
+
+#if QDDOT_SUNDIALS >= 70200
+
+BOOST_AUTO_TEST_CASE(a_step_of_an_averaging_method_multiplies_a_vibration_by_its_r) {
+  const Oscillator oscillator;
+  const Problem p = oscillator.problem();
+  for (const auto& [method, order, stages, r] : averaging) {
+    BOOST_TEST_CONTEXT(method) {
+      Method steps = method_named(method);
+      steps.knob = Knob::step_size;
+      for (const double y : {0.1, 1.0, 3.0}) {
+        // q + i v/w rotates by -i w.
+        const auto amplitude = [&](const State& s) {
+          return std::complex<double>(s.q[0], s.v[0] / oscillator.omega());
+        };
+        const double h = y / oscillator.omega();
+        const State end = run(steps, p, h, {.step_size = h}).state;
+        BOOST_TEST(std::abs(amplitude(end) - r({0, -y}) * amplitude(p.initial)) < 1e-14);
+      }
+      const SmoothChain chain;
+      const Ending bounded = chain.run_by(method_named(method));
+      const double longest = qddot::sundials::imaginary_stability(r, stages) / gershgorin;
+      BOOST_TEST(static_cast<double>(bounded.counts.steps) * longest >= chain.t_end);
+      BOOST_TEST(static_cast<double>(bounded.counts.steps) * longest < 1.5 * chain.t_end);
+      BOOST_TEST(bounded.counts.rejected == 0);
+      BOOST_TEST(bounded.error < 10 * rtol);
+    }
+  }
+}
+
+#endif
 
 BOOST_AUTO_TEST_CASE(explicit_methods_hold_their_steps_to_the_limit_of_the_stiffest_mode) {
   const SmoothChain chain;

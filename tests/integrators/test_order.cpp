@@ -45,19 +45,23 @@ constexpr int usual_halvings = 9, most_halvings = 12;
 
 // The numbers of steps that are tried, one after the other. Order 1 needs the most steps, until its
 // higher terms (h w / 2 of it) do not matter; those of order 2 are their squares. Multistep methods
-// need more steps than they begin with; their errors soon are so small that halvings would leave
-// too few.
+// need more steps than they begin with. Errors of an order from 8 on soon are so small that
+// halvings would leave too few.
 std::vector<int> step_counts(const Method& method, const KnownMotion& motion, int halvings) {
   std::vector<int> list;
-  if (!method.recurrence_roots) {
+  if (method.recurrence_roots) {
+    for (double steps = 6 * method.order; steps < 6 << halvings; steps *= 1.15) {
+      list.push_back(static_cast<int>(steps));
+    }
+  } else if (method.order >= 8) {
+    for (double steps = 4; steps < 6 << halvings; steps *= 1.25) {
+      list.push_back(static_cast<int>(steps));
+    }
+  } else {
     // In the stiff hammock only small steps inside err, and errors soon are rounding.
     const bool has_both = method.asks(Need::split_forces) && motion.name != "stiff hammock";
     const int first = has_both ? 20 : 6;
     for (int steps = first; steps <= first << halvings; steps *= 2) list.push_back(steps);
-  } else {
-    for (double steps = 6 * method.order; steps < 6 << halvings; steps *= 1.15) {
-      list.push_back(static_cast<int>(steps));
-    }
   }
   return list;
 }

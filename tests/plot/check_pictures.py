@@ -45,7 +45,7 @@ def least_text(path):
     Exponents, which matplotlib draws at 0.7 of their base, count as their base."""
     content = path.read_text(encoding="utf-8")
     width = float(re.search(r'width="([\d.]+)pt"', content)[1])
-    sizes = {float(size) for size in re.findall(r"font: (?:\w+ )*([\d.]+)px", content)}
+    sizes = {float(size) for size in re.findall(r"font(?:-size)?: (?:\w+ )*([\d.]+)px", content)}
     return min(size for size in sizes if size / 0.7 not in sizes) * PAGE / width
 
 

@@ -74,7 +74,8 @@ BOOST_AUTO_TEST_CASE(exponents_are_those_of_the_upper_decades_beside_those_of_th
 }
 
 BOOST_AUTO_TEST_CASE(what_is_expected_grows_as_theory_has_it_from_the_last_size) {
-  const SizedScenes& cloth = find_sized_scenes("cloth");
+  const std::string name = "cloth";
+  const SizedScenes& cloth = find_sized_scenes(name);
   const std::vector<PhaseCost> costs = {{"cloth", 100, 500, "m", "factorization", 9, 9},
                                         {"cloth", 1e4, 5e4, "m", "factorization", 2, 1e9},
                                         {"chain", 1e6, 1e6, "m", "factorization", 5, 5}};

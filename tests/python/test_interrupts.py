@@ -180,7 +180,8 @@ class Threads(unittest.TestCase):
 
 def said_by(code):
     """The output of a process that runs the code after BEGIN and ends well."""
-    words = [sys.executable, "-c", BEGIN + code]
+    # From 3.12 on, Python warns of a fork beside other threads.
+    words = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", BEGIN + code]
     done = subprocess.run(words, capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     return done.stdout

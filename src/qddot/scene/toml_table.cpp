@@ -12,9 +12,15 @@
 namespace qddot {
 namespace {
 
+// A float always has a point, an exponent or letters in TOML.
+std::string written(double number) {
+  const std::string digits = fmt::format("{}", number);
+  return digits.find_first_not_of("-0123456789") == digits.npos ? digits + ".0" : digits;
+}
+
 std::string written(const toml::node& node) {
   if (node.is_table()) return "a table";
-  if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
+  if (const auto* number = node.as_floating_point()) return written(number->get());
   if (const auto* array = node.as_array()) {
     std::vector<std::string> entries;
     for (const toml::node& entry : *array) entries.push_back(written(entry));
