@@ -14,6 +14,7 @@ import io
 import json
 import os
 import re
+import shutil
 import shlex
 import subprocess
 import sys
@@ -124,7 +125,10 @@ def digest(file):
 
 @functools.cache
 def commits_after(commit, *programs):
-    """The number of commits after this one that changed what these programs are made of."""
+    """The number of commits after this one that changed what these programs are made of; None where
+    git cannot say."""
+    if not shutil.which("git"):
+        return None
     own = [f"experiments/{program}" for program in programs]
     own += ["tests/fuzz", "tests/independent"] * any(p.startswith("fuzz_") for p in programs)
     count = subprocess.run(

@@ -300,7 +300,7 @@ class Ida final : public Library {
         {IDA_CONV_FAIL, Cause::convergence},  {IDA_NLS_FAIL, Cause::convergence},
         {IDA_LSETUP_FAIL, Cause::setup},      {IDA_FIRST_RES_FAIL, Cause::first_force},
         {IDA_RES_FAIL, Cause::force},         {IDA_REP_RES_ERR, Cause::force},
-        {IDA_ILL_INPUT, Cause::end_too_close}};  // the only cause of this flag that runs meet
+        {IDA_TOO_CLOSE, Cause::end_too_close}};  // the only cause of this flag that runs meet
     return cause_in(causes, flag);
   }
 

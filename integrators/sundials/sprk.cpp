@@ -65,6 +65,8 @@ class Sprk final : public ArkodeStepper {
     return self.guarded([&] {
       const bool is_finite = self.set_rate(self.system(), t, y, rate);
       Halves(rate).q.setZero();
+      // Some versions multiply by a b_i of zero what an earlier run has left here.
+      if (!is_finite) Halves(rate).v.setZero();
       return is_finite;
     });
   }

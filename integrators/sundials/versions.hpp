@@ -119,6 +119,11 @@ inline constexpr auto free_erk = ARKodeFree;
 inline constexpr auto free_mri = ARKodeFree;
 #endif
 
+// Older versions of IDA say so by another flag.
+#ifndef IDA_TOO_CLOSE
+inline constexpr int IDA_TOO_CLOSE = IDA_ILL_INPUT;
+#endif
+
 #if QDDOT_SUNDIALS < 70200
 inline constexpr auto ARKodeCreateMRIStepInnerStepper = ARKStepCreateMRIStepInnerStepper;
 #endif

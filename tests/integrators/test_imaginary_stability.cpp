@@ -213,10 +213,11 @@ BOOST_AUTO_TEST_CASE(the_error_estimate_of_order_8_sees_forces_that_depend_on_ti
   };
   const ButcherTable table = prince_dormand_8_7(), fehlberg = stock_table<ARKODE_FEHLBERG_13_7_8>();
   int order = 0, lower = 0;
-  // ARKODE checks all conditions up to order 6; the order of runs is tested for all methods.
+  // ARKODE checks all conditions up to order 6, or 8 in newer versions; the order of runs is tested
+  // for all methods.
   BOOST_TEST(ARKodeButcherTable_CheckOrder(table.get(), &order, &lower, nullptr) >= 0);
-  BOOST_TEST(order == 6);
-  BOOST_TEST(lower == 6);
+  BOOST_TEST((order == 6 || order == 8));
+  BOOST_TEST((lower == 6 || lower == 7));
   for (int k = 0; k < 8; ++k) {
     // Rounding of thirteen terms of up to three.
     BOOST_TEST(defect(*table, table->b, k) < 1e-15);

@@ -10,5 +10,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+# The wrapper by which CMake finds HDF5 tells of this machine's folders.
+list(APPEND CMAKE_LIBRARY_PATH ${ARM64_ROOT}/usr/lib/aarch64-linux-gnu/hdf5/serial)
 # Libraries of the sysroot that others need.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,${ARM64_ROOT}/usr/lib/aarch64-linux-gnu")
