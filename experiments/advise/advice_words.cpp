@@ -1,6 +1,7 @@
 #include "experiments/advise/advice_words.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 #include <fmt/format.h>
@@ -17,6 +18,13 @@ std::string beside(const std::optional<Candidate>& other, const Advice& advice) 
   if (!other || !advice.take) return "";
   if (other->method == advice.take->method) return "the one to take";
   return fmt::format("{} {:.3g} x", other->method->name, other->seconds / advice.take->seconds);
+}
+
+// What stands before a program's name where this one was called, as "python -m qddot "; else
+// nothing.
+std::string caller() {
+  const char* words = std::getenv("QDDOT_CALLER");
+  return words ? fmt::format("{} ", words) : "";
 }
 
 }  // namespace
@@ -76,8 +84,8 @@ void print_advice(const Advices& all, const SceneChoice& scene, double until) {
         scene.no_reduce.empty() ? ""
                                 : fmt::format(" --no-reduce {}", fmt::join(scene.no_reduce, ","));
     const std::string command =
-        fmt::format("simulate --scene {}{} --until {} --method {} --{} {} --final end.csv",
-                    shell_word(scene.name), reductions, until, take.method->name,
+        fmt::format("{}simulate --scene {}{} --until {} --method {} --{} {} --final end.csv",
+                    caller(), shell_word(scene.name), reductions, until, take.method->name,
                     take.method->knob == Knob::step_size ? "step-size" : "rtol", take.value);
     if (command != last) fmt::print("{}\n", command);
     last = command;

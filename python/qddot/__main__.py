@@ -15,7 +15,9 @@ def main() -> None:
             "qddot: this module was installed without the programs; a wheel of './run wheel' has "
             "them, and './run build' makes them in a clone"
         )
-    os.execv(programs, [str(programs), *sys.argv[1:]])
+    # Programs that print a command to copy put this before it.
+    caller = {"QDDOT_CALLER": f"{Path(sys.executable).name} -m qddot"}
+    os.execve(programs, [str(programs), *sys.argv[1:]], os.environ | caller)
 
 
 if __name__ == "__main__":

@@ -326,7 +326,13 @@ class Advice(Programs):
             "advise --scene pendulum --until 1 --accuracy 1e-3 --no-reduce dimension,mirror"
         )
         said = "simulate --scene pendulum --no-reduce dimension,mirror --until 1 "
-        self.assertIn(said, ended.stdout)
+        self.assertIn("\n" + said, ended.stdout)
+        # Who called it by another program's help copies a line that does so, too.
+        called = run(
+            "advise --scene pendulum --until 1 --accuracy 1e-3",
+            env=os.environ | {"QDDOT_CALLER": "python3 -m qddot"},
+        )
+        self.assertIn("\npython3 -m qddot simulate --scene pendulum --until 1 ", called.stdout)
 
     def test_an_answer_has_its_error_bar_in_words_and_beside_its_file(self):
         ended = self.done(
