@@ -9,6 +9,9 @@
 #else
 #define QDDOT_FUSES 0
 #endif
+#ifdef __aarch64__
+#include <arm_neon.h>
+#endif
 
 // Sources in folders `vectors` are compiled once for each level, whose name is QDDOT_LEVEL. They
 // define nothing with external linkage but a table of functions in a namespace of that name.
@@ -41,12 +44,16 @@ using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
 }
 
 // a b + c and c - a b, rounded once at levels that fuse them. The compiler also fuses sums of
-// products, but it is free to choose which of two products.
+// products, but it is free to choose which of two products, or none where one is used twice.
 [[gnu::always_inline]] inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
 #ifdef __AVX512F__
   return _mm512_fmadd_pd(a, b, c);
 #elif QDDOT_FUSES
   return _mm256_fmadd_pd(a, b, c);
+#elif defined __aarch64__
+  return reinterpret_cast<Lanes>(vfmaq_f64(reinterpret_cast<float64x2_t>(c),
+                                           reinterpret_cast<float64x2_t>(a),
+                                           reinterpret_cast<float64x2_t>(b)));
 #else
   return a * b + c;
 #endif
@@ -56,12 +63,16 @@ using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
   return _mm512_fnmadd_pd(a, b, c);
 #elif QDDOT_FUSES
   return _mm256_fnmadd_pd(a, b, c);
+#elif defined __aarch64__
+  return reinterpret_cast<Lanes>(vfmsq_f64(reinterpret_cast<float64x2_t>(c),
+                                           reinterpret_cast<float64x2_t>(a),
+                                           reinterpret_cast<float64x2_t>(b)));
 #else
   return c - a * b;
 #endif
 }
 [[gnu::always_inline]] inline double add_product(double a, double b, double c) {
-#if QDDOT_FUSES
+#if QDDOT_FUSES || defined __aarch64__
   return __builtin_fma(a, b, c);
 #else
   return a * b + c;
