@@ -129,9 +129,9 @@ std::vector<Complex> roots_of(const SymmetricFormula& formula, double h_omega) {
     }
   }
   const auto is_before = [h_omega](const Complex& a, const Complex& b) {
-    constexpr double rounding = 1e-12;  // of a modulus
+    constexpr double one_modulus = 1e-12;  // up to rounding
     const double longer = std::abs(a) - std::abs(b);
-    if (std::abs(longer) > rounding) return longer > 0;
+    if (std::abs(longer) > one_modulus) return longer > 0;
     return std::abs(std::abs(std::arg(a)) - h_omega) < std::abs(std::abs(std::arg(b)) - h_omega);
   };
   std::ranges::stable_sort(roots, is_before);
