@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "integrators/sundials/arkode_stepper.hpp"
+#include "integrators/sundials/arkode.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 
