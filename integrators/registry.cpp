@@ -7,7 +7,8 @@
 
 #include "qddot/integrators/integrator.hpp"
 
-// One line a method; each is defined in the file of its name or of its family.
+// One line a method; each is defined in the file of its name or of its family. Those of newer
+// versions of SUNDIALS come last, the newest at the end: lists are the same with any version.
 #define QDDOT_METHODS(METHOD)      \
   METHOD(explicit_euler)           \
   METHOD(symplectic_euler)         \
@@ -59,8 +60,6 @@
   METHOD(arkode_erk5)              \
   METHOD(arkode_erk6)              \
   METHOD(arkode_erk8)              \
-  METHOD(arkode_ssp3)              \
-  METHOD(arkode_ssp4)              \
   METHOD(arkode_imex3)             \
   METHOD(arkode_imex4)             \
   METHOD(arkode_imex5)             \
@@ -70,6 +69,11 @@
   METHOD(arkode_implicit_midpoint) \
   METHOD(arkode_sdirk2)            \
   METHOD(arkode_trbdf2)            \
+  METHOD(ida)                      \
+  METHOD(ida_klu)                  \
+  METHOD(cvode_bdf)                \
+  METHOD(cvode_bdf_klu)            \
+  METHOD(cvode_adams)              \
   METHOD(arkode_sprk2)             \
   METHOD(arkode_sprk3)             \
   METHOD(arkode_sprk4)             \
@@ -77,11 +81,8 @@
   METHOD(arkode_sprk6)             \
   METHOD(arkode_sprk8)             \
   METHOD(arkode_sprk10)            \
-  METHOD(ida)                      \
-  METHOD(ida_klu)                  \
-  METHOD(cvode_bdf)                \
-  METHOD(cvode_bdf_klu)            \
-  METHOD(cvode_adams)
+  METHOD(arkode_ssp3)              \
+  METHOD(arkode_ssp4)
 
 namespace qddot {
 
