@@ -89,9 +89,9 @@ int main(int argc, char** argv) {
         Options own = options_for(*method, value, subject.model, options);
         own.compensated = compensated && method->listens_to(Option::compensated);
         const std::string name = fmt::format("{} {:.17g}", method->name, value);
-        runs[i] = drift_run_of(study.piece(name, [&, method = method, seconds = seconds] {
-          return record_of(run_drift(*method, own, subject.model, momenta, scales,
-                                     {course.step_size, course.until, seconds}));
+        runs[i] = drift_run_of(study.piece(name, [&, by = method, limit = seconds] {
+          return record_of(run_drift(*by, own, subject.model, momenta, scales,
+                                     {course.step_size, course.until, limit}));
         }));
         progress().finish(fmt::format("{} {:.3g}: {}", method->name, value,
                                       verdict_name(runs[i]->energy.verdict)));

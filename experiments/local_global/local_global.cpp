@@ -125,9 +125,9 @@ int main(int argc, char** argv) {
           std::optional<State> exact;
           for (const auto& [method, n] : runs) {
             const std::string name = fmt::format("run {} {}", method->name, n);
-            const RunRow row = piece(study, name, [&, method = method, n = n] {
+            const RunRow row = piece(study, name, [&, by = method, iterations = n] {
               if (!exact) exact = cloth.truth(cloth.start, until);
-              return measured_run(cloth, *exact, *method, n, h, until);
+              return measured_run(cloth, *exact, *by, iterations, h, until);
             });
             if (row.outcome == Outcome::reached_end) run.add(row);
             print(row);

@@ -140,8 +140,8 @@ BOOST_DATA_TEST_CASE(errors_are_of_the_size_of_the_tolerance_where_steps_are_rej
 BOOST_AUTO_TEST_CASE(steps_are_held_to_the_stability_limit_at_coarse_tolerances) {
   const KnownMotion c = linear();
   for (const auto& [name, pair] : pairs()) {
-    const auto counts = [&, &name = name](double rtol) {
-      return run(method_named(name), *c.system, c.start, 10, {.rtol = rtol}).summary.counts;
+    const auto counts = [&, &by = name](double rtol) {
+      return run(method_named(by), *c.system, c.start, 10, {.rtol = rtol}).summary.counts;
     };
     const Counts coarse = counts(10), fine = counts(1e-12);
     // All but where steps begin small, and the two that share what is left at the end.

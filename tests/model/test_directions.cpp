@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(energies_of_small_strains_keep_their_digits) {
       const auto system = make_mass_spring(network);
       BOOST_TEST(system->stiffness_is_constant());
       // Differences of positions, and of these and the rest lengths, are without rounding.
-      const auto x = [&, &q = q](int i) { return has_mirror ? (i == 0 ? 0 : q[i - 1]) : q[i]; };
+      const auto x = [&, &at = q](int i) { return has_mirror ? (i == 0 ? 0 : at[i - 1]) : at[i]; };
       double v = 0;
       const auto add = [&](const auto& spring, double d) {
         v += 0.5 * spring.law.stiffness * std::pow(std::abs(d) - spring.law.rest_length, 2);
