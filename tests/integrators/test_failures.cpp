@@ -168,8 +168,8 @@ BOOST_DATA_TEST_CASE(where_a_force_becomes_no_number_a_run_ends_just_before,
   BOOST_TEST(r.state.t > (method.order == 8 ? 0.09 : 0.15));
   // The end of a step is a sum of rates, differences of solutions, and its last stage a solution:
   // the same but for rounding.
-  // Steps of a splitting, of averages of Euler's steps, and of the midpoint rule from SUNDIALS 7.1 on
-  // end on positions that no force has seen, at most a step of 0.05 m further.
+  // Steps of a splitting, of averages of Euler's steps, and of the midpoint rule from SUNDIALS 7.1
+  // on end on positions that no force has seen, at most a step of 0.05 m further.
   const bool ends_unseen = method.is(Trait::symplectic) || method.needs_sundials;
   BOOST_TEST(r.state.q[0] > 0.2 - (ends_unseen ? 0.05 : 1e-14));
   const State right = run(method, p, r.state.t, options_for(method)).state;
