@@ -20,8 +20,8 @@ std::string beside(const std::optional<Candidate>& other, const Advice& advice) 
   return fmt::format("{} {:.3g} x", other->method->name, other->seconds / advice.take->seconds);
 }
 
-// What stands before a program's name where this one was called, as "python -m qddot "; else
-// nothing.
+// The words that call a program of this kind, as "python -m qddot ", from the environment; empty if
+// a program is called by its own name.
 std::string caller() {
   const char* words = std::getenv("QDDOT_CALLER");
   return words ? fmt::format("{} ", words) : "";
