@@ -34,8 +34,8 @@ class Anytime(unittest.TestCase):
     def test_samples_have_the_error_of_the_steps(self):
         # q = cos 2t, at times that are in step with nothing. A state between ends of steps of one
         # size is that of one shorter step, whose error comes to those of the steps before. Theirs
-        # may be smaller with symplectic methods alone: they cancel over a period. SUNDIALS' methods end
-        # other steps at other times, to the same tolerance: their errors are some of it.
+        # may be smaller with symplectic methods alone: they cancel over a period. SUNDIALS' methods
+        # end other steps at other times, to the same tolerance: their errors are some of it.
         times = np.sort(np.random.default_rng(3).uniform(0, 3, 50))
         for method in qddot.methods():
             if set(method.needs) - {"stiffness", "constant_stiffness"}:
@@ -53,9 +53,10 @@ class Anytime(unittest.TestCase):
                 self.assertEqual((q.shape, v.shape), ((50, 1), (50, 1)))
                 ends = np.arange(61) * h
                 q_ends, v_ends = sol(ends)
+                q_ends, v_ends = q_ends[:, 0], v_ends[:, 0]
                 for size, one, between, at_steps in (
-                    (1, alone[0], q[:, 0] - np.cos(2 * times), q_ends[:, 0] - np.cos(2 * ends)),
-                    (2, alone[1], v[:, 0] + 2 * np.sin(2 * times), v_ends[:, 0] + 2 * np.sin(2 * ends)),
+                    (1, alone[0], q[:, 0] - np.cos(2 * times), q_ends - np.cos(2 * ends)),
+                    (2, alone[1], v[:, 0] + 2 * np.sin(2 * times), v_ends + 2 * np.sin(2 * ends)),
                 ):
                     least = size * (1e-13 if method.knob == "step_size" else 1e-5)
                     most = max(1.5 * np.max(np.abs(at_steps)) + one, least)
