@@ -81,6 +81,9 @@
   METHOD(arkode_sprk6)             \
   METHOD(arkode_sprk8)             \
   METHOD(arkode_sprk10)            \
+  METHOD(arkode_relaxed4)          \
+  METHOD(arkode_relaxed5)          \
+  METHOD(arkode_relaxed6)          \
   METHOD(arkode_ssp3)              \
   METHOD(arkode_ssp4)
 

@@ -17,6 +17,7 @@ enum class Cause {
   first_force,       // f is not finite at the start
   consistent_start,  // no positions of massless nodes were found that balance them
   loose_massless,    // springs no longer hold a massless node
+  relaxation,        // no shorter or longer step keeps the energy
   fast_steps,        // the small steps inside a large one are below rounding
   end_too_close,     // the time to run is below rounding
   other,

@@ -16,7 +16,12 @@ const std::vector<WithTable<NystromPair>>& pairs() {
   return list;
 }
 
-std::vector<Method> interpolating() { return methods_with(Trait::interpolates); }
+// The methods of AdaptiveStep.
+std::vector<Method> interpolating() {
+  auto list = methods_with(Trait::interpolates);
+  std::erase_if(list, [](const Method& method) { return method.family == Family::sundials; });
+  return list;
+}
 
 // A step of the higher order of a pair, from its definition.
 State formula(const NystromPair& pair, const System& system, const State& start, double h) {

@@ -30,7 +30,8 @@ struct Summary {
 // Observes a run: `see` is called at each of `times` [s] (ascending, after the start, at most
 // t_end) and at no other time. Fixed-step methods, and methods with Trait::interpolates, take the
 // same steps with and without an observer. A fixed-step method shows between its steps the end of a
-// shorter step from the last one. Adaptive methods of SUNDIALS end steps on these times.
+// shorter step from the last one. Other adaptive methods, those of SUNDIALS, end steps on these
+// times.
 struct Observer {
   std::vector<double> times;
   std::function<void(const State&)> see;

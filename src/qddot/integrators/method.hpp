@@ -53,6 +53,7 @@ enum class Need {
   split_forces,        // Split, in each block
   discrete_gradient,   // DiscreteGradient
   laplacian,           // Laplacian
+  potential,           // V
   conservative,        // a force that does not depend on velocities
   autonomous,          // a force, V and K that do not depend on time
 };
@@ -119,6 +120,7 @@ inline std::optional<Outcome> misfit(const Method& method, const System& system)
     return Outcome::no_laplacian;
   if (method.asks(Need::discrete_gradient) && system.size() > 0 && !system.discrete_gradient())
     return Outcome::no_discrete_gradient;
+  if (method.asks(Need::potential) && !system.has_potential()) return Outcome::no_potential;
   if (method.asks(Need::conservative) && !system.is_conservative())
     return Outcome::not_conservative;
   if (method.asks(Need::autonomous) && !system.is_autonomous()) return Outcome::not_autonomous;

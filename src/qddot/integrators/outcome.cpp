@@ -47,6 +47,9 @@ constexpr OutcomeWords outcomes[] = {
     {"no_discrete_gradient",
      "the system computes no discrete gradient of its energy, which this method needs: take "
      "another method"},
+    {"no_potential",
+     "the system computes no potential V, whose energy this method keeps: give it one, or take "
+     "another method"},
     {"not_conservative",
      "the forces depend on velocities, and this method is for forces of positions alone: take one "
      "for f(t, q, v), such as rk4"},

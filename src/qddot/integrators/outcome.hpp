@@ -22,6 +22,7 @@ enum class Outcome {
   no_laplacian,          // a method that takes L in place of -K, and a system that has none
   no_stiffness,          // a method that needs K, and a system without K
   no_discrete_gradient,  // a method that needs one, and a system without one
+  no_potential,          // a method that keeps the energy, and a system without V
   not_conservative,      // a method for forces of positions alone, and a system whose f sees v
   not_autonomous,        // a method for forces that stay the same, and a system whose f sees t
 };
