@@ -14,7 +14,8 @@ namespace qddot::judged_advice {
 
 void fold(HardCase& c, Draws& draw) {
   const int d = 2 + draw.one_of(2);
-  c.scene = net(draw, d, 4 + draw.one_of(5), 0.3, draw.happens(0.7));
+  const bool is_pinned = draw.happens(0.7);
+  c.scene = net(draw, d, 4 + draw.one_of(5), 0.3, is_pinned);
   const double v = draw.by_logarithm(1, 20);
   for (Node& node : c.scene.nodes) node.velocity = draw.in_box(d, v);
   if (d == 2 && draw.happens(0.5)) turn(c.scene, draw);
@@ -122,7 +123,8 @@ void prestressed(HardCase& c, Draws& draw) {
 
 void spinning(HardCase& c, Draws& draw) {
   const int d = 2 + draw.one_of(2);
-  c.scene = net(draw, d, 2 + draw.one_of(6), draw.happens(0.5) ? 0 : 0.1, false);
+  const double strain = draw.happens(0.5) ? 0 : 0.1;
+  c.scene = net(draw, d, 2 + draw.one_of(6), strain, false);
   const double stiffer = draw.by_logarithm(1, 100);
   for (Spring& spring : c.scene.springs) spring.law.stiffness *= stiffer;
   const double part = draw.by_logarithm(0.003, 0.7), w = fastest(c) * part;
@@ -135,7 +137,8 @@ void spinning(HardCase& c, Draws& draw) {
 
 void stiff(HardCase& c, Draws& draw) {
   const int d = 1 + draw.one_of(3);
-  c.scene = net(draw, d, 4 + draw.one_of(5), draw.happens(0.5) ? 0.02 : 0, true);
+  const double strain = draw.happens(0.5) ? 0.02 : 0;
+  c.scene = net(draw, d, 4 + draw.one_of(5), strain, true);
   const double ratio = draw.by_logarithm(1e2, 1e6);
   for (Node& node : c.scene.nodes) node.velocity = draw.in_box(d, draw.by_logarithm(0.1, 2));
   bool any = false;
@@ -153,7 +156,8 @@ void two_parts(HardCase& c, Draws& draw) {
   const int d = 1 + draw.one_of(3);
   const bool rests = draw.happens(0.2);
   c.scene = net(draw, d, 2 + draw.one_of(4), 0.1, true);
-  Scene other = net(draw, d, 2 + draw.one_of(4), rests ? 0 : 1e-3, draw.happens(0.7));
+  const bool is_pinned = draw.happens(0.7);
+  Scene other = net(draw, d, 2 + draw.one_of(4), rests ? 0 : 1e-3, is_pinned);
   for (Node& node : c.scene.nodes) node.velocity = draw.in_box(d, 1);
   const double stiffer = draw.by_logarithm(1, 1e4), size = draw.by_logarithm(1e-6, 1);
   const std::size_t first = c.scene.nodes.size();

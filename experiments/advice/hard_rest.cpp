@@ -58,7 +58,8 @@ void equilibrium_start(HardCase& c, Draws& draw) {
     }
     c.scene = scene;
   } else if (form == 1) {  // a free net at rest length
-    c.scene = net(draw, d, 3 + draw.one_of(4), 0, draw.happens(0.5));
+    const bool is_pinned = draw.happens(0.5);
+    c.scene = net(draw, d, 3 + draw.one_of(4), 0, is_pinned);
   } else if (form == 2) {  // upside down
     const double k = draw.by_logarithm(100, 1e4), m = draw.by_logarithm(0.1, 1);
     const double length = 1;

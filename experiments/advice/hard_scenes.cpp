@@ -64,8 +64,8 @@ Scene net(Draws& draw, int d, int nodes, double strain, bool is_pinned) {
     for (std::size_t j = 0; j < i; ++j) {
       const bool is_of_tree = j == (i - 1) / 2 || j + 1 == i;
       if (!is_of_tree && !draw.happens(0.3)) continue;
-      join(scene, j, i, draw.by_logarithm(3, 100),
-           apart(scene, i, j) * (1 + strain * draw.between(-1, 1)));
+      const double l0 = apart(scene, i, j) * (1 + strain * draw.between(-1, 1));
+      join(scene, j, i, draw.by_logarithm(3, 100), l0);
     }
   }
   return scene;

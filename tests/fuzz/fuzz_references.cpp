@@ -49,6 +49,9 @@ double magnitude(Real x) {
   return std::abs(static_cast<double>(x));
 }
 
+// An error is absolute where nothing moves (see Errors).
+double divided(double error, double scale) { return scale > 0 ? error / scale : error; }
+
 // The reference's true errors in the units of what it certifies, over the nodes with mass.
 template <class Real, class Plain>
 Errors true_errors(const Model& scene, const Scene& drawn, const Reference& reference,
@@ -66,10 +69,12 @@ Errors true_errors(const Model& scene, const Scene& drawn, const Reference& refe
   for (const PartScale& part : reference.scales.parts) {
     for (const std::size_t i : part.nodes) {
       if (drawn.nodes[i].mass == 0) continue;
-      errors.position = std::max(errors.position, distance(nodes[i].position, motion.state().x, i) /
-                                                      reference.scales.displacement_of(part));
-      errors.velocity = std::max(errors.velocity, distance(nodes[i].velocity, motion.state().v, i) /
-                                                      reference.scales.speed_of(part));
+      errors.position =
+          std::max(errors.position, divided(distance(nodes[i].position, motion.state().x, i),
+                                            reference.scales.displacement_of(part)));
+      errors.velocity =
+          std::max(errors.velocity, divided(distance(nodes[i].velocity, motion.state().v, i),
+                                            reference.scales.speed_of(part)));
     }
   }
   // Errors of E(0) as the reference gives it, and of E as it is computed from the end.
