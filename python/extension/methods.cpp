@@ -17,12 +17,13 @@ py::tuple names_in(const SetOf<Kind>& set, const std::array<const char*, count>&
   return py::tuple(held);
 }
 
-// These have the order of the enumerations in method.hpp.
+// These have the order of the enumerations in method.hpp. Every force of Python is conservative and
+// autonomous.
 constexpr std::array trait_names = {"implicit",        "linearly_implicit", "symplectic",
                                     "cancels_torques", "accepts_massless",  "interpolates",
                                     "bounds_steps",    "reversible",        "remembers_steps"};
 constexpr std::array need_names = {"stiffness", "constant_stiffness", "split_forces",
-                                   "discrete_gradient", "laplacian"};
+                                   "discrete_gradient", "laplacian", "potential"};
 
 py::tuple names_of_options(const Method& method) {
   py::list taken;

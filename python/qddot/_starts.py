@@ -84,6 +84,11 @@ def require_offered(of: System, chosen: Method) -> None:
             f"{chosen.name} needs a K that is the same everywhere: if that of {of.name!r} is, give "
             "it as a matrix, or say linear=True; or take another method"
         )
+    if "potential" in chosen.needs and not of.has_potential:
+        raise ValueError(
+            f"{chosen.name} needs V, whose energy it keeps: give {of.name!r} its potential, or take "
+            "another method"
+        )
     if "stiffness" in chosen.needs and not of.has_stiffness:
         raise ValueError(
             f"{chosen.name} needs K: give {of.name!r} its stiffness, or a pattern by which it is "
