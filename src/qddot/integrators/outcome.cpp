@@ -57,11 +57,11 @@ constexpr OutcomeWords outcomes[] = {
      "the forces depend on time, and this method is for forces that stay the same: take one for "
      "f(t, q), such as rk4"},
     {"unknown", ""}};  // any other number
-constexpr std::size_t count = std::size(outcomes) - 1;
-static_assert(count == static_cast<std::size_t>(Outcome::not_autonomous) + 1);
+constexpr std::size_t named_outcomes = std::size(outcomes) - 1;
+static_assert(named_outcomes == static_cast<std::size_t>(Outcome::not_autonomous) + 1);
 
 const OutcomeWords& words_of(Outcome outcome) {
-  return outcomes[std::min(static_cast<std::size_t>(outcome), count)];
+  return outcomes[std::min(static_cast<std::size_t>(outcome), named_outcomes)];
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ std::string_view name(Outcome outcome) { return words_of(outcome).name; }
 std::string_view advice(Outcome outcome) { return words_of(outcome).advice; }
 
 std::optional<Outcome> find_outcome(std::string_view word) {
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < named_outcomes; ++i) {
     if (outcomes[i].name == word) return static_cast<Outcome>(i);
   }
   return {};
