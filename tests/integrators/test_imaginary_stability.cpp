@@ -138,7 +138,9 @@ BOOST_AUTO_TEST_CASE(averaging_methods_have_the_order_of_their_growth) {
   for (const auto& [method, order, stages, r] : averaging) {
     BOOST_TEST_CONTEXT(method) {
       // R(z) = exp(z) + c z^(p + 1) + ...: half of z has a 2^(p + 1)th of the error.
-      const auto error = [&](double y) { return std::abs(r({0, y}) - std::polar(1., y)); };
+      const auto error = [&, growth_factor = r](double y) {
+        return std::abs(growth_factor({0, y}) - std::polar(1., y));
+      };
       const double observed = std::log2(error(0.2) / error(0.1)) - 1;
       BOOST_TEST(std::abs(observed - order) < 0.1);
       const double limit = qddot::sundials::imaginary_stability(r, stages);

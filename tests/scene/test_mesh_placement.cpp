@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(pins_may_name_nodes) {
            {"pin = [{nodes = [1], min = [0, 0, 0]}]\n", {"one of nodes, group, and a box"}},
            {"weld = -1\n", {"mesh.weld", "from 0"}},
            {"rotation = 90\n", {"mesh.rotation", "3 finite numbers"}}}) {
-    const std::string message = refusal_of([&] { scene_of(keys); });
+    const std::string message = refusal_of([&, mesh = keys] { scene_of(mesh); });
     BOOST_TEST(names_all(message, fragments), keys << " gives: " << message);
   }
 }
