@@ -100,7 +100,7 @@ class TakahashiImada4 final : public Formula {
   // f along v, over a thousandth of a step to either side.
   void enter(double h) {
     const double s = h * h / 24, e = 1e-3 * h;
-    const Vec& mass = system().mass();
+    const Mass& mass = system().mass();
     X& to = entered_;
     add_scaled(state_.q, e, state_.v, x_);
     force(x_, to.ahead.f);
@@ -117,7 +117,7 @@ class TakahashiImada4 final : public Formula {
   // coordinates; q and v may be those of x.
   void leave(const X& x, double h, Vec& q, Vec& v) {
     const double s = h * h / 24;
-    const Vec& mass = system().mass();
+    const Mass& mass = system().mass();
     x_ = 3 * (x.behind.f + x.ahead.f) - (x.behind.shifted + x.ahead.shifted);
     add_quotient(x.q, -s / 4, x_, mass, q);
     add_quotient(x.v, s / h, x.ahead.f, mass, v);

@@ -33,7 +33,7 @@ class Verlet final : public Formula {
   }
 
   Outcome step(const X& x, double h, X& next) {
-    const Vec& mass = system().mass();
+    const Mass& mass = system().mass();
     if (options().compensated) {
       v_.add_quotient(x.v, h / 2, x.f, mass, next.v);
       q_.add_scaled(x.q, h, next.v, next.q);

@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(masses_or_another_diagonal_are_solved_with_to_round_off) {
     const Vec other = Vec::LinSpaced(n, 1, 3), b = Vec::LinSpaced(n, 1, -3);
     EffectiveMass with_masses(*c.system), with_other(*c.system, other);
     for (auto [solver, diagonal] :
-         {std::pair(&with_masses, c.system->mass()), {&with_other, other}}) {
+         {std::pair<EffectiveMass*, Vec>(&with_masses, c.system->mass()), {&with_other, other}}) {
       for (const double s : {0.0, 1e-6, 1e-4, 1e-2, 1e6}) {
         Vec x(n), y(n);
         BOOST_TEST(solver->factorize_positive(2, s, c.k()));

@@ -1,3 +1,9 @@
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/model/vector_updates.hpp"
@@ -12,7 +18,8 @@ using namespace qddot;
 BOOST_AUTO_TEST_CASE(they_are_what_their_formulas_say) {
   constexpr double rounding = 2 * eps;
   for (Index n = 0; n < 20; ++n) {
-    const Vec x = Vec::Random(n), z = Vec::Random(n), m = Vec::Random(n).array() + 2;
+    const Vec x = Vec::Random(n), z = Vec::Random(n);
+    const Mass m(Vec::Random(n).array() + 2);
     const double c = 0.3;
     const Vec scaled = x + c * z, quotient = x + c * z.cwiseQuotient(m);
     Vec out(n);
@@ -21,7 +28,6 @@ BOOST_AUTO_TEST_CASE(they_are_what_their_formulas_say) {
     add_quotient(x, c, z, m, out);
     BOOST_TEST(out.isApprox(quotient, rounding));
     divide(z, m, out);
-    BOOST_TEST(out == Vec(z.cwiseQuotient(m)));
     multiply(z, m, out);
     BOOST_TEST(out == Vec(z.cwiseProduct(m)));
     // In place.
@@ -31,6 +37,41 @@ BOOST_AUTO_TEST_CASE(they_are_what_their_formulas_say) {
     out = z;
     add_scaled(x, c, out, out);
     BOOST_TEST(out.isApprox(scaled, rounding));
+  }
+}
+
+// Quotients have the bits of the processor's division: by masses alike or not, with or without
+// inverses, of forces of any size, next to the middle of two numbers, and of both zeros.
+BOOST_AUTO_TEST_CASE(quotients_are_the_nearest_numbers) {
+  std::mt19937_64 random(11);
+  const auto number = [&](int exponent) {
+    const double mantissa = std::uniform_real_distribution<double>(1, 2)(random);
+    const bool is_negative = random() % 2;
+    return std::ldexp(is_negative ? -mantissa : mantissa, exponent);
+  };
+  const auto exponent = [&](int most) {
+    return std::uniform_int_distribution<int>(-most, most)(random);
+  };
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const std::array<double, 8> special = {0.0,     -0.0, 0x1p-800, 0x1p800, 0x1p-1074, -0x1p1000,
+                                         0x1p-400, inf};
+  constexpr Index n = 67;
+  for (int trial = 0; trial < 20000; ++trial) {
+    Vec m(n), f(n), out(n);
+    const int most_of_m = trial % 5 == 4 ? 260 : trial % 5 == 3 ? 199 : 3;
+    const double same = std::abs(number(exponent(most_of_m)));
+    for (Index i = 0; i < n; ++i) {
+      m[i] = trial % 2 ? same : std::abs(number(exponent(most_of_m)));
+      f[i] = number(exponent(trial % 3 ? 20 : 790));
+      if (trial % 7 == 0 && i % 5 == 0) f[i] = special[random() % special.size()];
+      // Next to m times a number or the middle of two: there the last rounding is decided.
+      if (trial % 4 == 1) f[i] = m[i] * number(0) * (1 + exponent(1) * eps / 2);
+    }
+    const Mass mass(m);
+    divide(f, mass, out);
+    const Vec expected = f.cwiseQuotient(m);
+    BOOST_REQUIRE(std::memcmp(out.data(), expected.data(), n * sizeof(double)) == 0);
+    BOOST_REQUIRE(mass.is_uniform() == (trial % 2 && same >= 0x1p-200 && same <= 0x1p200));
   }
 }
 

@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "qddot/model/mass.hpp"
+
 namespace qddot {
 
 using Index = Eigen::Index;
@@ -91,7 +93,7 @@ class System {
   // The number n of unknown coordinates; zero if every node is pinned.
   Index size() const { return mass_.size(); }
   // The diagonal of the lumped mass matrix M [kg], length n. Entries may be zero (massless nodes).
-  const Vec& mass() const { return mass_; }
+  const Mass& mass() const { return mass_; }
   // Whether some unknown has no mass, so that M^-1 and an acceleration do not exist for it.
   bool has_massless() const { return (mass_.array() == 0).any(); }
   // The kinetic energy 1/2 v'Mv [J]; v: n.
@@ -136,7 +138,7 @@ class System {
   virtual std::span<const std::unique_ptr<System>> blocks() const { return {}; }
 
  private:
-  Vec mass_;
+  Mass mass_;
 };
 
 // Kinetic plus potential energy [J] of a state.

@@ -22,25 +22,33 @@ void combine(const double* x, double d, const double* v, double c, const Eigen::
                                             static_cast<int>(b.size()), out, n);
 }
 
+kernels::Masses masses(const Mass& m) {
+  return {m.data(), m.inverse().size() > 0 ? m.inverse().data() : nullptr, m.is_uniform()};
+}
+
 }  // namespace
 
 void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out) {
   kernels::vector_kernels().add_scaled(x.data(), c, z.data(), out.data(), x.size());
 }
 
-void add_quotient(const VecView& x, double c, const VecView& f, const VecView& m, MutableVec out) {
-  kernels::vector_kernels().add_quotient(x.data(), c, f.data(), m.data(), out.data(), x.size());
+void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m, MutableVec out) {
+  kernels::vector_kernels().add_quotient(x.data(), c, f.data(), masses(m), out.data(), x.size());
 }
 
 void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
                     MutableVec w) {
   const auto& [q, v, f, m] = motion;
-  kernels::vector_kernels().kick_and_drift(q.data(), v.data(), f.data(), m.data(), c0, c, h,
+  kernels::vector_kernels().kick_and_drift(q.data(), v.data(), f.data(), masses(m), c0, c, h,
                                            q_next.data(), w.data(), q.size());
 }
 
+void divide(const VecView& f, const Mass& m, MutableVec out) {
+  kernels::vector_kernels().divide(f.data(), masses(m), out.data(), f.size());
+}
+
 void divide(const VecView& f, const VecView& m, MutableVec out) {
-  kernels::vector_kernels().divide(f.data(), m.data(), out.data(), f.size());
+  kernels::vector_kernels().divide(f.data(), {m.data(), nullptr, false}, out.data(), f.size());
 }
 
 void multiply(const VecView& a, const VecView& b, MutableVec out) {
@@ -78,8 +86,8 @@ double squared_norm(const VecView& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
 }
 
-double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const VecView& m) {
-  return kernels::vector_kernels().squared_norm_of_kicked(v.data(), c, f.data(), m.data(),
+double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const Mass& m) {
+  return kernels::vector_kernels().squared_norm_of_kicked(v.data(), c, f.data(), masses(m),
                                                           v.size());
 }
 

@@ -11,14 +11,16 @@ namespace qddot {
 // out = x + c z
 void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out);
 // out = x + c f/m, entry by entry.
-void add_quotient(const VecView& x, double c, const VecView& f, const VecView& m, MutableVec out);
+void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m, MutableVec out);
 // Two kicks and a drift: w = (v + c0 f/m) + c f/m, `q_next` = q + h w.
 struct Motion {
-  const Vec &q, &v, &f, &m;
+  const Vec &q, &v, &f;
+  const Mass& m;
 };
 void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
                     MutableVec w);
 // out = f/m and out = a b, entry by entry.
+void divide(const VecView& f, const Mass& m, MutableVec out);
 void divide(const VecView& f, const VecView& m, MutableVec out);
 void multiply(const VecView& a, const VecView& b, MutableVec out);
 // out = x + c K b, with as many first columns of K as b has entries, at most 32.
@@ -43,7 +45,7 @@ void step_by_history(const HistoryStep& step, const VecView& f, const VecView& c
 // |x|^2
 double squared_norm(const VecView& x);
 // |v + c f/m|^2
-double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const VecView& m);
+double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const Mass& m);
 // The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of the tolerance, squared.
 double squared_error(const VecView& x, double rtol, const VecView& y, double atol);
 

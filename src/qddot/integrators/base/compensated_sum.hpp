@@ -23,7 +23,7 @@ class CompensatedSum {
     add(now, c * z, next);
   }
   // x' = x + c f/m
-  void add_quotient(const Vec& now, double c, const Vec& f, const Vec& m, Vec& next) {
+  void add_quotient(const Vec& now, double c, const Vec& f, const Mass& m, Vec& next) {
     if (rest_.size() == 0) return qddot::add_quotient(now, c, f, m, next);
     add(now, c * f.cwiseQuotient(m), next);
   }

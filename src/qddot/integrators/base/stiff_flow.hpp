@@ -23,7 +23,7 @@ class StiffFlow {
   static constexpr double largest_step_times_frequency = order == 2 ? 1.8 : 3.0;
 
   // `coefficients`: their number in p, at most 7.
-  StiffFlow(const Vec& mass, int coefficients)
+  StiffFlow(const Mass& mass, int coefficients)
       : mass_(mass),
         coefficients_(coefficients),
         forces_(mass.size(), coefficients + 1),
@@ -81,7 +81,7 @@ class StiffFlow {
     return {weights_.data(), static_cast<std::size_t>(coefficients_) + 1};
   }
 
-  const Vec& mass_;
+  const Mass& mass_;
   int coefficients_;
   Eigen::MatrixXd forces_;  // the coefficients, and f
   Vec momentum_, shift_, shifted_;

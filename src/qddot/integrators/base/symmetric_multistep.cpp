@@ -59,7 +59,7 @@ void SymmetricMultistep::evaluate(X& x) {
 
 void SymmetricMultistep::single_step(X& x, double h, X& next) {
   const NystromPair& pair = formula_.single_step();
-  const Vec& mass = system().mass();
+  const Mass& mass = system().mass();
   show(x, true, state_);
   evaluate(x);
   divide(x.f, mass, a_);
@@ -73,7 +73,7 @@ void SymmetricMultistep::single_step(X& x, double h, X& next) {
 }
 
 void SymmetricMultistep::begin_from(X& x) {
-  const Vec& mass = system().mass();
+  const Mass& mass = system().mass();
   evaluate(x);
   divide(x.f, mass, a_);
   first_.compute(x.q, x.v, a_, h_, formula_.steps / 2, [&](double t, const Vec& q, MutableVec g) {

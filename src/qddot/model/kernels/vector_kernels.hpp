@@ -5,19 +5,26 @@
 // The data that vector kernels read and write: plain numbers only, as in spring_kernels.hpp.
 namespace qddot::kernels {
 
+// Masses, and the numbers nearest to their inverses: n of them, or one if all are the same, or
+// nullptr; see Mass.
+struct Masses {
+  const double *m, *inverse;
+  bool is_uniform;
+};
+
 // One version's functions on n numbers; `out` may be one of the others.
 struct VectorKernels {
   // out = x + c z
   void (*add_scaled)(const double* x, double c, const double* z, double* out, std::ptrdiff_t n);
   // out = x + c f/m, number by number.
-  void (*add_quotient)(const double* x, double c, const double* f, const double* m, double* out,
+  void (*add_quotient)(const double* x, double c, const double* f, const Masses& m, double* out,
                        std::ptrdiff_t n);
   // w = (v + c0 f/m) + c f/m and q' = q + h w, number by number.
-  void (*kick_and_drift)(const double* q, const double* v, const double* f, const double* m,
+  void (*kick_and_drift)(const double* q, const double* v, const double* f, const Masses& m,
                          double c0, double c, double h, double* q_next, double* w,
                          std::ptrdiff_t n);
   // out = f/m and out = a b, number by number.
-  void (*divide)(const double* f, const double* m, double* out, std::ptrdiff_t n);
+  void (*divide)(const double* f, const Masses& m, double* out, std::ptrdiff_t n);
   void (*multiply)(const double* a, const double* b, double* out, std::ptrdiff_t n);
   // out = x + d v + c (b_0 z_0 + b_1 z_1 + ...) of `count` vectors, without x or v if that is
   // nullptr.
@@ -33,7 +40,7 @@ struct VectorKernels {
   // x_0^2 + x_1^2 + ...
   double (*squared_norm)(const double* x, std::ptrdiff_t n);
   // |v + c f/m|^2
-  double (*squared_norm_of_kicked)(const double* v, double c, const double* f, const double* m,
+  double (*squared_norm_of_kicked)(const double* v, double c, const double* f, const Masses& m,
                                    std::ptrdiff_t n);
   // The squared norm of x_i/(rtol |y_i| + atol).
   double (*squared_error)(const double* x, double rtol, const double* y, double atol,

@@ -71,6 +71,16 @@ using LaneNumbers = long __attribute__((vector_size(lanes * sizeof(long))));
   return c - a * b;
 #endif
 }
+#if QDDOT_FUSES
+// a b - c
+[[gnu::always_inline]] inline Lanes product_less(Lanes a, Lanes b, Lanes c) {
+#ifdef __AVX512F__
+  return _mm512_fmsub_pd(a, b, c);
+#else
+  return _mm256_fmsub_pd(a, b, c);
+#endif
+}
+#endif
 [[gnu::always_inline]] inline double add_product(double a, double b, double c) {
 #if QDDOT_FUSES || defined __aarch64__
   return __builtin_fma(a, b, c);
