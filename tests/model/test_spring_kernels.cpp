@@ -114,13 +114,13 @@ std::vector<int> shuffled(int count) {
   return order;
 }
 
-std::vector<std::vector<Neighbour>> neighbours_in(const Network& network) {
-  std::vector<std::vector<Neighbour>> neighbours(network.node_mass.size());
-  for (const auto& link : network.links) {
-    neighbours[link.i].push_back({link.j, link.law});
-    neighbours[link.j].push_back({link.i, link.law});
-  }
-  return neighbours;
+Neighbours neighbours_in(const Network& network) {
+  return neighbours_of(static_cast<int>(network.node_mass.size()), [&](const auto& see) {
+    for (const auto& link : network.links) {
+      see(link.i, link.j, link.law);
+      see(link.j, link.i, link.law);
+    }
+  });
 }
 
 }  // namespace

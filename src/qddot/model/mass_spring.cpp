@@ -97,7 +97,7 @@ class MassSpring final : public CapableSystem {
 
   void force(const At& at, MutableVec f) const override {
     const VecView& q = at.q;
-    if (by_node_) return by_node_->sum_forces(q, weight_, f);
+    if (by_node_) return by_node_->sum_forces(q, f);
     f = weight_;
     springs_.add_forces(
         [&](const auto& spring) { return spring_force(spring.law, springs_.between(q, spring)); },
@@ -106,7 +106,7 @@ class MassSpring final : public CapableSystem {
 
   void mean_force(const At& start, const At& end, MutableVec f) const override {
     const VecView &a = start.q, &b = end.q;
-    if (by_node_) return by_node_->sum_mean_forces(a, b, weight_, f);
+    if (by_node_) return by_node_->sum_mean_forces(a, b, f);
     f = weight_;
     springs_.add_forces(
         [&](const auto& spring) {
@@ -200,7 +200,7 @@ class MassSpring final : public CapableSystem {
     directions_ = directions(network, layout_);
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
-      by_node_.emplace(network, layout_);
+      by_node_.emplace(network, layout_, weight_);
       columns_.emplace(network, layout_, *by_node_, springs_.pattern());
     }
     linear_ = network.uses_constant_stiffness;

@@ -13,7 +13,10 @@ bool roots_and_quotients(Roots roots, const double* a, const double* t, double* 
       store(root + i, l);
       store(quotient + i, load(t + i) / l);
     } else {
-      const auto [l, half_inverse] = estimated_root(load(a + i));
+      const Lanes number[] = {load(a + i)};
+      Lanes roots_of[1], half_inverses[1];
+      estimated_roots(number, roots_of, half_inverses);
+      const Lanes l = roots_of[0], half_inverse = half_inverses[0];
       store(root + i, l);
       store(quotient + i, roots == Roots::estimated
                               ? estimated_quotient(load(t + i), l, half_inverse)

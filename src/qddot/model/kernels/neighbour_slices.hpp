@@ -2,17 +2,11 @@
 
 #include <vector>
 
+#include "qddot/model/kernels/neighbours.hpp"
 #include "qddot/model/kernels/spring_kernels.hpp"
-#include "qddot/model/spring.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot::kernels {
-
-// One end of a spring as seen from its node: the other end.
-struct Neighbour {
-  int point;  // a node, or an extra point; see slice_neighbours
-  SpringLaw law;
-};
 
 // The springs of all nodes, laid out for a processor that evaluates several at once. A row is a
 // node, a slice has `slice_rows` rows, and a slot has one spring of each row. Every spring is here
@@ -29,9 +23,11 @@ struct NeighbourSlices {
   std::vector<Slice> slices;  // and the end
   std::vector<int> shifts;    // of a slot: its rows' neighbours are at the rows' places plus this
   std::vector<int> gathers;   // of a slot: `slice_rows` places
-  // The stiffnesses of a slot's springs. The rest lengths follow if any spring of the network has
-  // one, then the quartic stiffnesses likewise. Each slice has its slots of one shift first, then
-  // its slots that gather.
+  // The laws of a slot's springs: places of `slice_rows` stiffnesses, of their rest lengths if any
+  // spring of the network has one, and of their quartic stiffnesses likewise. Equal vectors stand
+  // there once: those of a grid are few and stay in the nearest cache. Each slice has its slots of
+  // one shift first, then its slots that gather.
+  std::vector<SlotLaw> slot_laws;
   Vec laws;
   int law_vectors = 1;
   std::vector<char> gathered;  // of a slice: whether any slot gathers from its places
@@ -40,8 +36,8 @@ struct NeighbourSlices {
   int count() const { return static_cast<int>(slices.size()) - 1; }
 };
 
-// neighbours[i]: those of node i < N; points N, ..., N + extras - 1 are no nodes. Rows are in the
-// nodes' order, or sorted by number of springs within windows if that leaves fewer slots.
-NeighbourSlices slice_neighbours(const std::vector<std::vector<Neighbour>>& neighbours, int extras);
+// N nodes; points N, ..., N + extras - 1 are no nodes. Rows are in the nodes' order, or sorted by
+// number of springs within windows if that leaves fewer slots.
+NeighbourSlices slice_neighbours(const Neighbours& neighbours, int extras);
 
 }  // namespace qddot::kernels

@@ -1,11 +1,14 @@
 #include "qddot/model/kernels/rings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <map>
 
 namespace qddot::kernels {
 namespace {
+
+constexpr int block_rows = slice_rows * slices_of_block;
 
 // The slots of one shift of all slices.
 class ShiftSlots {
@@ -23,41 +26,44 @@ class ShiftSlots {
 
   // Whether the slots of the opposite shift contain the springs of a slot of negative shift.
   bool has_opposites(int slice, int s) const {
-    const int shift = slices_.shifts[s];
-    if (shift > -slice_rows || find(slice, shift) != s) return false;
-    for (int t = 0; t < slice_rows; ++t) {
-      const int other = slice * slice_rows + t + shift, other_slice = other / slice_rows;
-      const int opposite = other < 0 ? -1 : find(other_slice, -shift);
-      if (opposite < 0 || !is_same(slice, s, t, other_slice, opposite, other % slice_rows)) {
-        return false;
+    const int shift = slices_.shifts[s], first = slice * slice_rows + shift;
+    if (shift >= 0 || first < 0 || find(slice, shift) != s) return false;
+    for (const int other : {first / slice_rows, (first + slice_rows - 1) / slice_rows}) {
+      const int opposite = find(other, -shift);
+      if (opposite < 0) return false;
+      // Row r of this slice is row r + first - row of the other.
+      const int row = other * slice_rows;
+      const int from = std::max(row - first, 0), end = std::min(row + slice_rows - first, slice_rows);
+      for (int t = from; t < end; ++t) {
+        if (!is_same(slice, s, t, other, opposite, first + t - row)) return false;
       }
     }
     return true;
   }
 
+  const SlotLaw& law_of(int slice, int s) const {
+    const Slice& begin = slices_.slices[slice];
+    return slices_.slot_laws[begin.slot() + s - begin.shift];
+  }
+
  private:
   bool is_same(int slice, int s, int t, int other_slice, int opposite, int other_t) const {
-    const double *law = law_of(slice, s) + t, *other = law_of(other_slice, opposite) + other_t;
-    for (int v = 0; v < slices_.law_vectors; ++v) {
-      if (law[v * slice_rows] != other[v * slice_rows]) return false;
-    }
-    return true;
-  }
-  const double* law_of(int slice, int s) const {
-    const Slice& begin = slices_.slices[slice];
-    return slices_.laws.data() + begin.law +
-           Index{s - begin.shift} * slices_.law_vectors * slice_rows;
+    const SlotLaw &law = law_of(slice, s), &other = law_of(other_slice, opposite);
+    const auto have_same = [&](int place, int other_place) {
+      return slices_.laws[place + t] == slices_.laws[other_place + other_t];
+    };
+    const int vectors = slices_.law_vectors;
+    return have_same(law.stiffness, other.stiffness) &&
+           (vectors < 2 || have_same(law.rest_length, other.rest_length)) &&
+           (vectors < 3 || have_same(law.quartic, other.quartic));
   }
 
   const NeighbourSlices& slices_;
 };
 
-}  // namespace
-
-Rings rings_of(const NeighbourSlices& slices) {
-  Rings result;
+// Decides which slots store and which read.
+void share(const NeighbourSlices& slices, const ShiftSlots& slots, Rings& result) {
   result.uses.assign(slices.shifts.size(), {RingUse::none, 0});
-  const ShiftSlots slots(slices);
   std::map<int, int> ring_of;  // by the opposite shift
   for (int slice = 0; slice < slices.count(); ++slice) {
     for (int s = slices.slices[slice].shift; s < slices.slices[slice + 1].shift; ++s) {
@@ -65,9 +71,8 @@ Rings rings_of(const NeighbourSlices& slices) {
       const int opposite = -slices.shifts[s];
       const auto [found, is_new] = ring_of.try_emplace(opposite, std::ssize(result.rings));
       if (is_new) {
-        // The ring spans the rows from a slice's first row to the last row found with it.
-        const int rows =
-            static_cast<int>(std::bit_ceil(static_cast<unsigned>(opposite + slice_rows)));
+        // The ring spans the rows of a block and the rows before it that are found with it.
+        const auto rows = static_cast<int>(std::bit_ceil(static_cast<unsigned>(opposite + block_rows)));
         result.rings.push_back({result.numbers, rows - 1});
         result.numbers += rows + slice_rows;
       }
@@ -78,6 +83,61 @@ Rings rings_of(const NeighbourSlices& slices) {
       }
     }
   }
+}
+
+// Lists the slots that store, slice after slice.
+void list_jobs(const NeighbourSlices& slices, const ShiftSlots& slots, Rings& result) {
+  for (int slice = 0; slice < slices.count(); ++slice) {
+    result.first_job.push_back(static_cast<int>(result.jobs.size()));
+    for (int s = slices.slices[slice].shift; s < slices.slices[slice + 1].shift; ++s) {
+      if (result.uses[s].kind != RingUse::keeps) continue;
+      const Ring& ring = result.rings[result.uses[s].ring];
+      const int row = slice * slice_rows, at = row & ring.mask;
+      const int copy = at < slice_rows ? ring.begin + ring.mask + 1 + at : -1;
+      result.jobs.push_back({row, slices.shifts[s], slots.law_of(slice, s), ring.begin + at, copy});
+    }
+  }
+  result.first_job.push_back(static_cast<int>(result.jobs.size()));
+}
+
+// Lists the terms of each slice; slices with the same terms share them, as most of a grid do.
+void list_terms(const NeighbourSlices& slices, Rings& result) {
+  std::map<std::vector<std::array<int, 2>>, int> known;  // by shift and use
+  std::vector<std::array<int, 2>> terms;
+  for (int slice = 0; slice < slices.count(); ++slice) {
+    const Slice &begin = slices.slices[slice], &end = slices.slices[slice + 1];
+    SliceTerms own{-1, 0};
+    terms.clear();
+    bool has_all = begin.gather == end.gather;
+    for (int s = begin.shift; s < end.shift; ++s) {
+      has_all &= result.uses[s].kind != RingUse::none;
+      terms.push_back({slices.shifts[s], result.uses[s].kind});
+      if (result.uses[s].kind == RingUse::finds) own.reach = std::min(own.reach, slices.shifts[s]);
+    }
+    if (has_all) {
+      const auto [found, is_new] = known.try_emplace(terms, std::ssize(result.terms));
+      own.first = found->second;
+      for (int s = begin.shift; is_new && s < end.shift; ++s) {
+        const auto [kind, number] = result.uses[s];
+        const Ring& ring = result.rings[number];
+        const int shift = slices.shifts[s];
+        result.terms.push_back({shift, kind == RingUse::finds ? shift : 0, ring.mask, ring.begin});
+      }
+    }
+    result.slice_terms.push_back(own);
+  }
+}
+
+}  // namespace
+
+Rings rings_of(const NeighbourSlices& slices) {
+  Rings result;
+  if (slices.law_vectors == 1) return result;  // tau/l is the stiffness
+  const ShiftSlots slots(slices);
+  share(slices, slots, result);
+  if (result.rings.empty()) return result;
+  list_jobs(slices, slots, result);
+  list_terms(slices, result);
   return result;
 }
 

@@ -18,12 +18,17 @@ constexpr std::array<std::string_view, kinds_of_roots> root_names = {"processor"
 class Sample {
  public:
   Sample() {
-    for (int i = 0; i < nodes; ++i) {
-      for (int j = std::max(0, i - reach); j < std::min(nodes, i + reach + 1); ++j) {
-        if (j != i) neighbours_[i].push_back({j, {.stiffness = 100, .rest_length = 0.9}});
-      }
-    }
-    slices_ = slice_neighbours(neighbours_, 0);
+    slices_ = slice_neighbours(
+        neighbours_of(nodes,
+                      [](const auto& see) {
+                        for (int i = 0; i < nodes; ++i) {
+                          for (int j = std::max(0, i - reach); j < std::min(nodes, i + reach + 1);
+                               ++j) {
+                            if (j != i) see(i, j, {.stiffness = 100, .rest_length = 0.9});
+                          }
+                        }
+                      }),
+        0);
     orders_.assign(slices_.count(), Order::by_slice);
     for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
     q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);
@@ -38,7 +43,7 @@ class Sample {
                               .shifts = slices_.shifts.data(),
                               .gathers = slices_.gathers.data(),
                               .rings = nullptr,
-                              .ring_uses = nullptr,
+                              .slot_laws = slices_.slot_laws.data(),
                               .laws = slices_.laws.data(),
                               .law_vectors = slices_.law_vectors,
                               .unknowns = unknowns_.data(),
@@ -47,14 +52,13 @@ class Sample {
     const Positions positions{x_.data(), slices_.rows(), x_.data() + 3 * slices_.rows()};
     const auto start = Clock::now();
     kernels.place(springs, q_.data(), positions, 0, slices_.count());
-    kernels.force(springs, positions, nullptr, offset_.data(), f_.data(), 0, slices_.count());
+    kernels.force(springs, positions, nullptr, {offset_.data(), nullptr}, f_.data(), 0, slices_.count());
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
  private:
   static constexpr int nodes = 64 * slice_rows, reach = 12;
 
-  std::vector<std::vector<Neighbour>> neighbours_{nodes};
   NeighbourSlices slices_;
   std::vector<Order> orders_;
   std::vector<int> unknowns_;
@@ -115,12 +119,11 @@ std::span<const std::string_view> names_of_roots() { return root_names; }
 
 bool can_be_estimated(const NeighbourSlices& slices) {
   if (slices.law_vectors == 1) return true;
-  const Index stride = slices.law_vectors * slice_rows;
-  for (Index at = 0; at < slices.laws.size(); at += stride) {
+  for (const SlotLaw& law : slices.slot_laws) {
     for (int t = 0; t < slice_rows; ++t) {
-      const double* law = slices.laws.data() + at + t;
-      const double stiffness = law[0], rest_length = law[slice_rows],
-                   quartic = slices.law_vectors > 2 ? law[2 * slice_rows] : 0;
+      const double* numbers = slices.laws.data() + t;
+      const double stiffness = numbers[law.stiffness], rest_length = numbers[law.rest_length],
+                   quartic = slices.law_vectors > 2 ? numbers[law.quartic] : 0;
       // A rest length without stiffness gives a tension of minus zero.
       const bool is_spring = stiffness > 0 || quartic > 0 || rest_length == 0;
       if (!is_spring || !is_moderate(stiffness) || !is_moderate(quartic) || rest_length > extreme) {

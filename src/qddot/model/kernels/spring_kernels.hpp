@@ -14,17 +14,25 @@ constexpr int slice_rows = 8;
 // The start of a slice's slots; they end where those of the next slice begin.
 struct Slice {
   int shift, gather;
-  std::ptrdiff_t law;
+
+  // The number of its first slot among all.
+  constexpr int slot() const { return shift + gather / slice_rows; }
+};
+
+// The laws of a slot: the places of `slice_rows` numbers each among all laws' numbers.
+struct SlotLaw {
+  int stiffness, rest_length, quartic;
 };
 
 // The order of the unknowns of a slice: consecutive for all of its rows, consecutive for each row,
 // or with coordinates that are no unknowns.
 enum class Order { by_slice, by_row, none };
 
-// A ring buffer for the springs of one shift, until the rows of their other ends follow. It holds
-// the numbers of the last `mask` + 1 rows, a power of two; its first rows are repeated behind them.
+// A ring buffer for tau/l of the springs of one shift, until the rows of their other ends follow. It
+// holds the numbers of the last `mask` + 1 rows, a power of two; its first rows are repeated behind
+// them.
 struct Ring {
-  std::ptrdiff_t begin;  // in the memory of all rings
+  int begin;  // in the memory of all rings
   int mask;
 };
 
@@ -34,17 +42,55 @@ struct RingUse {
   int ring;
 };
 
+// A slot whose numbers a ring keeps. They are stored at the place `at` and, unless it is negative,
+// at `copy`.
+struct RingJob {
+  int row, shift;  // its slice's first row
+  SlotLaw law;
+  int at, copy;
+};
+
+// A slot whose numbers stand in a ring: at begin + ((row + from) & mask) for a row and the next.
+struct RingTerm {
+  int shift, from, mask, begin;
+};
+
+// The terms of a slice of whose slots all are in rings: terms[first] and the following, one for each
+// slot. They read nothing of rows before its first row + reach. first < 0: some slot has no ring.
+struct SliceTerms {
+  int first, reach;
+};
+
+// The rings of a network; see Rings.
+struct RingTable {
+  const Ring* rings;
+  const RingUse* uses;       // of the slots of one shift
+  const RingJob* jobs;       // slice after slice
+  const int* first_job;      // of each slice, and the end
+  const RingTerm* terms;     // each list of different terms once
+  const SliceTerms* slices;  // of each slice
+};
+
+// Slices are summed in blocks of this many where there are rings.
+constexpr int slices_of_block = 8;
+
 // The springs of a network; see NeighbourSlices and SpringsByNode.
 struct SpringTable {
   const Slice* slices;
   const int *shifts, *gathers;
-  const Ring* rings;         // nullptr where there are none
-  const RingUse* ring_uses;  // of the slots of one shift
+  const RingTable* rings;    // nullptr where there are none
+  const SlotLaw* slot_laws;  // of all slots
   const double* laws;
   int law_vectors;
   const int* unknowns;   // D of each row; -1 - x for a coordinate that is x and no unknown
   const Order* orders;   // of the slices
   const char* gathered;  // of the slices: whether any slot gathers from their rows
+};
+
+// A constant part of the forces: n numbers. If it is the same for all nodes, `of_slice` has it for
+// the rows of one slice, else that is nullptr.
+struct Offset {
+  const double *all, *of_slice;
 };
 
 // Positions by coordinate and place and, if D > 1, point by point too.
@@ -82,14 +128,14 @@ struct SpringKernels {
   // Copies the rows' coordinates at q to their places in the positions.
   void (*place)(const SpringTable&, const double* q, const Positions&, int from, int end);
   // f = offset + the forces of the rows' springs. `rings`: memory for all rings.
-  void (*force)(const SpringTable&, const Positions&, double* rings, const double* offset,
-                double* f, int from, int end);
+  void (*force)(const SpringTable&, const Positions&, double* rings, const Offset&, double* f,
+                int from, int end);
   // Adds the energies of the rows' springs to `sums`: sums[r] is for row r of every slice. A spring
   // between two rows counts twice.
   void (*energy)(const SpringTable&, const Positions&, double* sums, int from, int end);
   // f = offset + the discrete gradients of the rows' springs between two positions.
   void (*mean_force)(const SpringTable&, const Positions& before, const Positions& after,
-                     const double* offset, double* f, int from, int end);
+                     const Offset&, double* f, int from, int end);
   // Writes the rows' columns of K.
   void (*stiffness)(const SpringTable&, const Positions&, const StiffnessTable&, TensionPart,
                     double* values, int from, int end);

@@ -8,23 +8,21 @@
 namespace qddot::kernels {
 
 template <int D>
-SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout) {
+SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout, const Vec& weight)
+    : weight_(weight) {
   const int nodes = static_cast<int>(layout.nodes());
-  std::vector<int> springs(nodes);
-  for (const auto& link : network.links) ++springs[link.i], ++springs[link.j];
-  std::vector<std::vector<Neighbour>> neighbours(nodes);
-  for (int i = 0; i < nodes; ++i) neighbours[i].reserve(springs[i]);
-  for (const auto& link : network.links) {
-    neighbours[link.i].push_back({link.j, link.law});
-    neighbours[link.j].push_back({link.i, link.law});
+  for (Index i = 0; i < std::ssize(slice_weight_) && weight.size() >= D; ++i) {
+    slice_weight_[static_cast<std::size_t>(i)] = weight[i % D];
   }
+  has_same_weights_ = weight.size() >= D && weight.tail(weight.size() - D) == weight.head(weight.size() - D);
   std::map<std::array<double, D>, int> points;
+  std::vector<int> anchored_to;  // the point of each anchor
   for (const auto& anchor : network.anchors) {
     std::array<double, D> x;
     std::copy_n(anchor.point.data(), D, x.begin());
     const auto [point, is_new] = points.try_emplace(x, std::ssize(points_));
     if (is_new) points_.push_back(x);
-    neighbours[anchor.i].push_back({nodes + point->second, anchor.law});
+    anchored_to.push_back(nodes + point->second);
   }
   // Images are ordered by mirror, then by source, so that the image of a grid is a grid.
   std::map<std::pair<std::array<double, D>, int>, int> images;
@@ -41,12 +39,24 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout)
     images_.push_back({image.second, image.first});
   }
   // The spring pulls x_i towards S x_j and x_j towards S x_i, with S the mirror.
+  std::vector<std::array<int, 2>> image_ends;
   for (const auto& link : network.image_links) {
-    neighbours[link.i].push_back({image_of(link.j, link.mirror), link.law});
-    neighbours[link.j].push_back({image_of(link.i, link.mirror), link.law});
+    image_ends.push_back({image_of(link.j, link.mirror), image_of(link.i, link.mirror)});
   }
-  slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()));
-  rings_ = rings_of(slices_);
+  const auto for_each_end = [&](const auto& see) {
+    for (const auto& link : network.links) see(link.i, link.j, link.law), see(link.j, link.i, link.law);
+    for (std::size_t e = 0; e < anchored_to.size(); ++e) {
+      see(network.anchors[e].i, anchored_to[e], network.anchors[e].law);
+    }
+    for (std::size_t e = 0; e < image_ends.size(); ++e) {
+      const auto& link = network.image_links[e];
+      see(link.i, image_ends[e][0], link.law), see(link.j, image_ends[e][1], link.law);
+    }
+  };
+  slices_ = slice_neighbours(neighbours_of(nodes, for_each_end),
+                             static_cast<int>(points_.size() + images_.size()));
+  if (D > 1) rings_ = rings_of(slices_);
+  ring_table_ = rings_.table();
   kernels_ = spring_kernels(D, can_be_estimated(slices_) ? roots() : Roots::processor);
 
   std::vector<int> place(nodes);
@@ -79,8 +89,8 @@ SpringTable SpringsByNode<D>::table() const {
   return {.slices = slices_.slices.data(),
           .shifts = slices_.shifts.data(),
           .gathers = slices_.gathers.data(),
-          .rings = rings_.rings.empty() ? nullptr : rings_.rings.data(),
-          .ring_uses = rings_.uses.data(),
+          .rings = rings_.rings.empty() ? nullptr : &ring_table_,
+          .slot_laws = slices_.slot_laws.data(),
           .laws = slices_.laws.data(),
           .law_vectors = slices_.law_vectors,
           .unknowns = unknowns_.data(),
@@ -89,12 +99,12 @@ SpringTable SpringsByNode<D>::table() const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_forces(const VecView& q, const Vec& offset, MutableVec f) const {
+void SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f) const {
   const SpringTable springs = table();
   for_slices(q, [&](const Positions& positions, int from, int end) {
     thread_local Vec memory;
     if (memory.size() < rings_.numbers) memory.resize(rings_.numbers);
-    kernels_->force(springs, positions, memory.data(), offset.data(), f.data(), from, end);
+    kernels_->force(springs, positions, memory.data(), offset(), f.data(), from, end);
   });
 }
 
@@ -108,9 +118,9 @@ double SpringsByNode<D>::half_sum_energies(const VecView& q) const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b, const Vec& offset,
+void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b,
                                        MutableVec f) const {
-  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset.data(), f.data(), 0,
+  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(), f.data(), 0,
                        slices_.count());
 }
 

@@ -19,7 +19,8 @@ namespace qddot::kernels {
 template <int D>
 class SpringsByNode {
  public:
-  SpringsByNode(const Network& network, const Layout<D>& layout);
+  // `weight` (n) [N] acts besides the springs; it must outlive this.
+  SpringsByNode(const Network& network, const Layout<D>& layout, const Vec& weight);
 
   const NeighbourSlices& slices() const { return slices_; }
   // The D coordinates of a row; -1 - x for a coordinate that is always x and no unknown.
@@ -28,18 +29,18 @@ class SpringsByNode {
   // Everything as kernels read it; valid as long as this.
   SpringTable table() const;
 
-  // f = offset + the forces of the springs [N], for each node
+  // f = weight + the forces of the springs [N], for each node
   //   sum over its springs of (tau/l) (x_j - x_i).
   // It differs from a sum spring by spring by rounding only. It is the same to the last bit for any
   // number of threads, kind of roots and width of vectors (except v2, without fused products). q,
-  // offset, f: n. May be called from any thread.
-  void sum_forces(const VecView& q, const Vec& offset, MutableVec f) const;
+  // f: n. May be called from any thread.
+  void sum_forces(const VecView& q, MutableVec f) const;
 
   // V of all springs [J], with springs to fixed points counted half; alike at every width of
   // vectors.
   double half_sum_energies(const VecView& q) const;
-  // f = offset + the springs' discrete gradients between a and b (see DiscreteGradient).
-  void sum_mean_forces(const VecView& a, const VecView& b, const Vec& offset, MutableVec f) const;
+  // f = weight + the springs' discrete gradients between a and b (see DiscreteGradient).
+  void sum_mean_forces(const VecView& a, const VecView& b, MutableVec f) const;
 
   // Calls action(positions at q, from, end) for slices [from, end) until all are done, in several
   // OpenMP threads if there are enough springs. The calls must not depend on each other.
@@ -54,6 +55,8 @@ class SpringsByNode {
   // Fewer slots than these are done before a second thread has begun.
   static constexpr Index slots_worth_threads = 8000;
 
+  // The weight as kernels read it: 24 numbers in place of n if it is the same for all nodes.
+  Offset offset() const { return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr}; }
   // Memory for all places: this thread's until the next call. There are two.
   Positions memory(int which = 0) const;
   // The same with all of them at q.
@@ -62,10 +65,14 @@ class SpringsByNode {
   void place_extras(const Positions& positions) const;
 
   const SpringKernels* kernels_;
+  const Vec& weight_;
+  bool has_same_weights_ = false;
+  std::array<double, D * slice_rows> slice_weight_{};
   std::vector<std::array<double, D>> points_;
   std::vector<Image> images_;  // extras are the points, then these
   NeighbourSlices slices_;
   Rings rings_;
+  RingTable ring_table_{};
   std::vector<int> unknowns_;  // D of each row
   std::vector<Order> order_;   // of the slices
 };

@@ -89,18 +89,19 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
     const int block = block_of(pattern, layout, node, later);
     return block >= 0 && links[block] == 1 ? block : -1;
   };
-  const double* law = slices.laws.data();
+  const SlotLaw* law = slices.slot_laws.data();
   const auto add_slot = [&](int row, const auto& place_of) {
     std::vector<int> targets(slice_rows, -1);
     for (int t = 0; t < slice_rows; ++t) {
       // A row without a spring has one of stiffness zero.
-      const bool is_spring = law[t] > 0 || (slices.law_vectors == 3 && law[2 * slice_rows + t] > 0);
+      const bool is_spring = slices.laws[law->stiffness + t] > 0 ||
+                             (slices.law_vectors == 3 && slices.laws[law->quartic + t] > 0);
       if (is_spring) targets[t] = target(row + t, place_of(t));
       if (targets[t] < 0) continue;
       const int* columns = columns_.data() + D * (row + t);
       for (int b = 0; b < D; ++b) mark(written, targets[t] + columns[b] - columns[0] - b, D);
     }
-    law += slices.law_vectors * slice_rows;
+    ++law;
     const bool has_one = std::ranges::any_of(targets, [](int block) { return block >= 0; });
     slot_targets_.push_back(has_one ? static_cast<int>(targets_.size()) : -1);
     if (has_one) targets_.insert(targets_.end(), targets.begin(), targets.end());

@@ -5,6 +5,42 @@
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
+// Copies the coordinates of a slice whose nodes' unknowns follow one another by nodes alone.
+template <int D>
+[[gnu::always_inline]] inline void place_by_row(const double* q, const int* unknowns, int row,
+                                                bool is_gathered, const Positions& positions) {
+#ifdef __AVX512F__
+  if constexpr (D > 1) {
+    // No number behind a node's last is read.
+    __m256d x[slice_rows];
+    unroll<slice_rows>([&]<int t>() __attribute__((always_inline)) {
+      x[t] = _mm256_maskz_loadu_pd((1 << D) - 1, q + unknowns[D * t]);
+    });
+    if (is_gathered) {
+      double* points = positions.points + point_stride<D> * std::ptrdiff_t{row};
+      unroll<slice_rows>([&]<int t>() __attribute__((always_inline)) {
+        _mm256_storeu_pd(points + point_stride<D> * t, x[t]);
+      });
+    }
+    Lanes rows[4], coordinates[D];
+    unroll<4>([&]<int t>() __attribute__((always_inline)) {
+      rows[t] = _mm512_insertf64x4(_mm512_castpd256_pd512(x[t]), x[t + 4], 1);
+    });
+    transpose<D>(rows, coordinates);
+    for (int a = 0; a < D; ++a) store(coordinate(positions, a, row), coordinates[a]);
+    return;
+  }
+#endif
+  for (int t = 0; t < slice_rows; ++t) {
+    const double* x = q + unknowns[D * t];
+    double* point = positions.points + point_stride<D> * std::ptrdiff_t{row + t};
+    for (int a = 0; a < D; ++a) {
+      *coordinate(positions, a, row + t) = x[a];
+      if (D > 1 && is_gathered) point[a] = x[a];
+    }
+  }
+}
+
 template <int D>
 [[gnu::always_inline]] inline void place_slice(const SpringTable& springs, const double* q,
                                                int slice, const Positions& positions) {
@@ -17,10 +53,7 @@ template <int D>
       for (int a = 0; a < D; ++a) store(coordinate(positions, a, row + t), x[a]);
     }
   } else if (springs.orders[slice] == Order::by_row) {
-    for (int t = 0; t < slice_rows; ++t) {
-      const double* x = q + unknowns[D * t];
-      for (int a = 0; a < D; ++a) *coordinate(positions, a, row + t) = x[a];
-    }
+    return place_by_row<D>(q, unknowns, row, springs.gathered[slice], positions);
   } else {
     for (int t = 0; t < slice_rows; ++t) {
       for (int a = 0; a < D; ++a) {

@@ -63,6 +63,17 @@ template <int half>
   return shuffle(a, b, [](int t) { return t / 4 * 4 + 2 * half + t % 2 + t % 4 / 2 * lanes; });
 }
 
+// x[a] = coordinate a of 4 points or, of 8, points t and t + 4 side by side in row[t].
+template <int D>
+[[gnu::always_inline]] inline void transpose(const Lanes (&row)[4], Lanes (&x)[D]) {
+  const Lanes low = pairs<0>(row[0], row[1]), high = pairs<0>(row[2], row[3]);
+  x[0] = halves<0>(low, high);
+  x[1] = halves<1>(low, high);
+  if constexpr (D == 3) {
+    x[2] = halves<0>(pairs<2>(row[0], row[1]), pairs<2>(row[2], row[3]));
+  }
+}
+
 // x[a][t] = points[stride j[t] + a], by whole points and not by single numbers.
 template <int D, int width = lanes>
 [[gnu::always_inline]] inline void gather(const double* points, const int* j, Lanes (&x)[D]) {
@@ -84,12 +95,7 @@ template <int D, int width = lanes>
         row[t] = point(t);
       }
     });
-    const Lanes low = pairs<0>(row[0], row[1]), high = pairs<0>(row[2], row[3]);
-    x[0] = halves<0>(low, high);
-    x[1] = halves<1>(low, high);
-    if constexpr (D == 3) {
-      x[2] = halves<0>(pairs<2>(row[0], row[1]), pairs<2>(row[2], row[3]));
-    }
+    transpose<D>(row, x);
   }
 }
 

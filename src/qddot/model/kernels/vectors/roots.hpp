@@ -56,27 +56,51 @@ class Range {
   LaneNumbers seen_ = {};
 };
 
-// The root of a in the range, and about 1/(2 sqrt(a)).
-struct Root {
-  Lanes root, half_inverse;
-};
-[[gnu::always_inline]] inline Root estimated_root(Lanes a) {
+// The roots of several a in the range, and about 1/(2 sqrt(a)); each operation for all of them
+// before the next.
+template <int count>
+[[gnu::always_inline]] inline void estimated_roots(const Lanes (&a)[count], Lanes (&root)[count],
+                                                   Lanes (&half_inverse)[count]) {
   const Lanes one = 1 + Lanes{};
+  Lanes g[count], h[count], e[count], c[count];
+  const auto for_each = [](const auto& body)
+      __attribute__((always_inline)) { unroll<count>(body); };
+  for_each([&]<int i>() __attribute__((always_inline)) {
 #ifdef __AVX512F__
-  const Lanes y = _mm512_rsqrt14_pd(a);
+    h[i] = _mm512_rsqrt14_pd(a[i]);
 #else
-  const Lanes y = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a)));
+    h[i] = _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a[i])));
 #endif
-  const Lanes h = 0.5 * y, g = a * y, e = subtract_product(g, h, 0.5 * one);
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) {
+    g[i] = a[i] * h[i];
+    h[i] = 0.5 * h[i];
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) {
+    e[i] = subtract_product(g[i], h[i], 0.5 * one);
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) {
 #ifdef __AVX512F__
-  const Lanes cubic = 2.5 * one;
+    c[i] = 2.5 * one;
 #else
-  const Lanes cubic = add_product(e, 4.375 * one, 2.5 * one);
+    c[i] = add_product(e[i], 4.375 * one, 2.5 * one);
 #endif
-  const Lanes c = e * add_product(e, add_product(e, cubic, 1.5 * one), one);
-  const Lanes near_root = add_product(g, c, g), half_inverse = add_product(h, c, h);
-  const Lanes rest = subtract_product(near_root, near_root, a);
-  return {add_product(rest, half_inverse, near_root), half_inverse};
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) {
+    c[i] = add_product(e[i], c[i], 1.5 * one);
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) { c[i] = add_product(e[i], c[i], one); });
+  for_each([&]<int i>() __attribute__((always_inline)) { c[i] = e[i] * c[i]; });
+  for_each([&]<int i>() __attribute__((always_inline)) {
+    g[i] = add_product(g[i], c[i], g[i]);
+    half_inverse[i] = add_product(h[i], c[i], h[i]);
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) {
+    e[i] = subtract_product(g[i], g[i], a[i]);
+  });
+  for_each([&]<int i>() __attribute__((always_inline)) {
+    root[i] = add_product(e[i], half_inverse[i], g[i]);
+  });
 }
 
 // t/l, given about 1/(2 l).
@@ -96,10 +120,11 @@ class Range {
   void add(Lanes) {}
   bool holds() const { return true; }
 };
-struct Root {
-  Lanes root, half_inverse;
-};
-[[gnu::always_inline]] inline Root estimated_root(Lanes a) { return {square_root(a), Lanes{}}; }
+template <int count>
+[[gnu::always_inline]] inline void estimated_roots(const Lanes (&a)[count], Lanes (&root)[count],
+                                                   Lanes (&)[count]) {
+  for (int i = 0; i < count; ++i) root[i] = square_root(a[i]);
+}
 [[gnu::always_inline]] inline Lanes estimated_quotient(Lanes t, Lanes l, Lanes) { return t / l; }
 
 #endif
@@ -110,7 +135,10 @@ template <Roots roots>
   if constexpr (roots == Roots::processor) {
     return square_root(a);
   } else {
-    return estimated_root(a).root;
+    const Lanes number[] = {a};
+    Lanes root[1], half_inverse[1];
+    estimated_roots(number, root, half_inverse);
+    return root[0];
   }
 }
 

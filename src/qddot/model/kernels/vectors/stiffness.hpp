@@ -23,17 +23,17 @@ struct Slopes {
   Lanes along, across, inverse_length;
 };
 template <int D, int law_vectors, Roots roots, class Counted>
-[[gnu::always_inline]] inline Slopes slopes(Lanes l2, const double* law, const Counted& counted,
+[[gnu::always_inline]] inline Slopes slopes(Lanes l2, const Law& law, const Counted& counted,
                                             Range& range) {
-  const Lanes stiffness = load(law);
+  const Lanes stiffness = load(law.stiffness);
   if constexpr (law_vectors == 1 || (D == 1 && law_vectors == 2)) {
     return {stiffness, stiffness, Lanes{}};
   } else {
     if constexpr (roots != Roots::processor) range.add(l2);
-    const Lanes l = root_of<roots>(l2), rest_length = load(law + slice_rows), s = l - rest_length;
+    const Lanes l = root_of<roots>(l2), rest_length = load(law.rest_length), s = l - rest_length;
     Lanes along = stiffness, tension = s * stiffness;
     if constexpr (law_vectors == 3) {
-      const Lanes quartic = load(law + 2 * slice_rows) * (s * s);
+      const Lanes quartic = load(law.quartic) * (s * s);
       along = stiffness + 3 * quartic;
       tension = s * (stiffness + quartic);
     }
@@ -98,13 +98,13 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
   constexpr Roots roots = D == 1 || law_vectors == 1 ? Roots::processor : chosen;
   for (int i = from * parts_of_slice; i < end * parts_of_slice; ++i) {
     const int slice = i / parts_of_slice, part = i % parts_of_slice;
-    const int first = springs.slices[slice].shift + springs.slices[slice].gather / slice_rows;
+    const int first = springs.slices[slice].slot();
     const int* columns = table.columns + D * (slice * slice_rows + part * lanes);
     Lanes own[triangle<D>];
     by_roots<roots>([&]<Roots in_use>(Range & range) __attribute__((always_inline)) {
       // A range-for would lose the attribute that vectors may be unaligned.
       for (int e = 0; e < triangle<D>; ++e) own[e] = Lanes{};
-      const auto add = [&](int slot, const Lanes(&d)[D], const double* law)
+      const auto add = [&](int slot, const Lanes(&d)[D], const Law& law)
           __attribute__((always_inline)) {
         Lanes block[triangle<D>];
         const Lanes l2 = squared_length<D>(d);
@@ -114,9 +114,9 @@ void write(const SpringTable& springs, const Positions& positions, const Stiffne
         if (at < 0) return;
         put_blocks<D>(block, table.targets + at + part * lanes, columns, values);
       };
-      for_slots<D, law_vectors>(
+      for_slots<D>(
           springs, slice, part, positions,
-          [&](int, int slot, const Lanes(&d)[D], const double* law)
+          [&](int, int slot, const Lanes(&d)[D], const Law& law)
               __attribute__((always_inline)) { add(slot, d, law); },
           add);
     });
