@@ -76,8 +76,8 @@ class Slicer {
 
  private:
   void begin_slice() {
-    result_.slices.push_back({static_cast<int>(result_.shifts.size()),
-                              static_cast<int>(result_.gathers.size())});
+    result_.slices.push_back(
+        {static_cast<int>(result_.shifts.size()), static_cast<int>(result_.gathers.size())});
   }
 
   void take_rows(int first) {
@@ -109,9 +109,8 @@ class Slicer {
       laws[t] = e < 0 ? &none : &neighbours_.laws[rows_[t][e].law];
     }
     const auto numbers = [&](int vector, double SpringLaw::*number) {
-      return vector < result_.law_vectors
-                 ? laws_.place([&](int t) { return laws[t]->*number; })
-                 : 0;
+      return vector < result_.law_vectors ? laws_.place([&](int t) { return laws[t]->*number; })
+                                          : 0;
     };
     result_.slot_laws.push_back({numbers(0, &SpringLaw::stiffness),
                                  numbers(1, &SpringLaw::rest_length),

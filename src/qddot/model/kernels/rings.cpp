@@ -9,6 +9,8 @@ namespace qddot::kernels {
 namespace {
 
 constexpr int block_rows = slice_rows * slices_of_block;
+// The share of slots that must read.
+constexpr double worth_rings = 0.1;
 
 // The slots of one shift of all slices.
 class ShiftSlots {
@@ -33,7 +35,8 @@ class ShiftSlots {
       if (opposite < 0) return false;
       // Row r of this slice is row r + first - row of the other.
       const int row = other * slice_rows;
-      const int from = std::max(row - first, 0), end = std::min(row + slice_rows - first, slice_rows);
+      const int from = std::max(row - first, 0),
+                end = std::min(row + slice_rows - first, slice_rows);
       for (int t = from; t < end; ++t) {
         if (!is_same(slice, s, t, other, opposite, first + t - row)) return false;
       }
@@ -72,7 +75,8 @@ void share(const NeighbourSlices& slices, const ShiftSlots& slots, Rings& result
       const auto [found, is_new] = ring_of.try_emplace(opposite, std::ssize(result.rings));
       if (is_new) {
         // The ring spans the rows of a block and the rows before it that are found with it.
-        const auto rows = static_cast<int>(std::bit_ceil(static_cast<unsigned>(opposite + block_rows)));
+        const auto rows =
+            static_cast<int>(std::bit_ceil(static_cast<unsigned>(opposite + block_rows)));
         result.rings.push_back({result.numbers, rows - 1});
         result.numbers += rows + slice_rows;
       }
@@ -135,7 +139,9 @@ Rings rings_of(const NeighbourSlices& slices) {
   if (slices.law_vectors == 1) return result;  // tau/l is the stiffness
   const ShiftSlots slots(slices);
   share(slices, slots, result);
-  if (result.rings.empty()) return result;
+  // Where few slots read, it is faster to compute several side by side.
+  const auto reads = std::ranges::count(result.uses, RingUse::finds, &RingUse::kind);
+  if (reads < worth_rings * static_cast<double>(slices.slot_laws.size())) return {};
   list_jobs(slices, slots, result);
   list_terms(slices, result);
   return result;

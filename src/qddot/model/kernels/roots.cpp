@@ -18,17 +18,18 @@ constexpr std::array<std::string_view, kinds_of_roots> root_names = {"processor"
 class Sample {
  public:
   Sample() {
-    slices_ = slice_neighbours(
-        neighbours_of(nodes,
-                      [](const auto& see) {
-                        for (int i = 0; i < nodes; ++i) {
-                          for (int j = std::max(0, i - reach); j < std::min(nodes, i + reach + 1);
-                               ++j) {
-                            if (j != i) see(i, j, {.stiffness = 100, .rest_length = 0.9});
-                          }
-                        }
-                      }),
-        0);
+    slices_ =
+        slice_neighbours(neighbours_of(nodes,
+                                       [](const auto& see) {
+                                         for (int i = 0; i < nodes; ++i) {
+                                           for (int j = std::max(0, i - reach);
+                                                j < std::min(nodes, i + reach + 1); ++j) {
+                                             if (j != i)
+                                               see(i, j, {.stiffness = 100, .rest_length = 0.9});
+                                           }
+                                         }
+                                       }),
+                         0);
     orders_.assign(slices_.count(), Order::by_slice);
     for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
     q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);
@@ -52,7 +53,8 @@ class Sample {
     const Positions positions{x_.data(), slices_.rows(), x_.data() + 3 * slices_.rows()};
     const auto start = Clock::now();
     kernels.place(springs, q_.data(), positions, 0, slices_.count());
-    kernels.force(springs, positions, nullptr, {offset_.data(), nullptr}, f_.data(), 0, slices_.count());
+    kernels.force(springs, positions, nullptr, {offset_.data(), nullptr}, f_.data(), 0,
+                  slices_.count());
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 

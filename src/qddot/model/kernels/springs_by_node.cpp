@@ -14,7 +14,8 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout,
   for (Index i = 0; i < std::ssize(slice_weight_) && weight.size() >= D; ++i) {
     slice_weight_[static_cast<std::size_t>(i)] = weight[i % D];
   }
-  has_same_weights_ = weight.size() >= D && weight.tail(weight.size() - D) == weight.head(weight.size() - D);
+  has_same_weights_ =
+      weight.size() >= D && weight.tail(weight.size() - D) == weight.head(weight.size() - D);
   std::map<std::array<double, D>, int> points;
   std::vector<int> anchored_to;  // the point of each anchor
   for (const auto& anchor : network.anchors) {
@@ -44,7 +45,8 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout,
     image_ends.push_back({image_of(link.j, link.mirror), image_of(link.i, link.mirror)});
   }
   const auto for_each_end = [&](const auto& see) {
-    for (const auto& link : network.links) see(link.i, link.j, link.law), see(link.j, link.i, link.law);
+    for (const auto& link : network.links)
+      see(link.i, link.j, link.law), see(link.j, link.i, link.law);
     for (std::size_t e = 0; e < anchored_to.size(); ++e) {
       see(network.anchors[e].i, anchored_to[e], network.anchors[e].law);
     }
@@ -118,10 +120,8 @@ double SpringsByNode<D>::half_sum_energies(const VecView& q) const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b,
-                                       MutableVec f) const {
-  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(), f.data(), 0,
-                       slices_.count());
+void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b, MutableVec f) const {
+  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(), f.data(), 0, slices_.count());
 }
 
 template <int D>

@@ -29,8 +29,9 @@ void sum_forces_on_line(const SpringTable& springs, const Positions& positions,
   for (int i = from * parts_of_slice; i < end * parts_of_slice; ++i) {
     const int slice = i / parts_of_slice, part = i % parts_of_slice;
     Lanes sum[] = {Lanes{}};
-    const auto add = [&](const Lanes(&d)[1], const Law& law)
-        __attribute__((always_inline)) { sum[0] += force_on_line<law_vectors>(d[0], law); };
+    const auto add = [&](const Lanes(&d)[1], const Law& law) __attribute__((always_inline)) {
+      sum[0] += force_on_line<law_vectors>(d[0], law);
+    };
     for_slots<1>(
         springs, slice, part, positions,
         [&](int, int, const Lanes(&d)[1], const Law& law)

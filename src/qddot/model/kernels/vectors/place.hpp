@@ -24,7 +24,8 @@ template <int D>
     }
     Lanes rows[4], coordinates[D];
     unroll<4>([&]<int t>() __attribute__((always_inline)) {
-      rows[t] = _mm512_insertf64x4(_mm512_castpd256_pd512(x[t]), x[t + 4], 1);
+      constexpr int first = point_of_row(t);
+      rows[t] = _mm512_insertf64x4(_mm512_castpd256_pd512(x[first]), x[first + 2], 1);
     });
     transpose<D>(rows, coordinates);
     for (int a = 0; a < D; ++a) store(coordinate(positions, a, row), coordinates[a]);
@@ -36,7 +37,7 @@ template <int D>
     double* point = positions.points + point_stride<D> * std::ptrdiff_t{row + t};
     for (int a = 0; a < D; ++a) {
       *coordinate(positions, a, row + t) = x[a];
-      if (D > 1 && is_gathered) point[a] = x[a];
+      if (is_gathered) point[a] = x[a];
     }
   }
 }
@@ -46,14 +47,18 @@ template <int D>
                                                int slice, const Positions& positions) {
   const int row = slice * slice_rows;
   const int* unknowns = springs.unknowns + D * row;
+  const bool is_gathered = D > 1 && springs.gathered[slice];
+  // Vectors of eight lanes write points faster by rows.
+  const bool is_by_row = springs.orders[slice] == Order::by_row || (lanes == 8 && is_gathered);
+  if (springs.orders[slice] != Order::none && is_by_row) {
+    return place_by_row<D>(q, unknowns, row, is_gathered, positions);
+  }
   if (springs.orders[slice] == Order::by_slice) {
     for (int t = 0; t < slice_rows; t += lanes) {
       Lanes x[D];
       deinterleave<D>(q + unknowns[0] + D * t, x);
       for (int a = 0; a < D; ++a) store(coordinate(positions, a, row + t), x[a]);
     }
-  } else if (springs.orders[slice] == Order::by_row) {
-    return place_by_row<D>(q, unknowns, row, springs.gathered[slice], positions);
   } else {
     for (int t = 0; t < slice_rows; ++t) {
       for (int a = 0; a < D; ++a) {
@@ -62,16 +67,18 @@ template <int D>
       }
     }
   }
-  if (D == 1 || !springs.gathered[slice]) return;
+  if (!is_gathered) return;
   for (int t = 0; t < slice_rows; ++t) {
     double* point = positions.points + point_stride<D> * std::ptrdiff_t{row + t};
     for (int a = 0; a < D; ++a) point[a] = *coordinate(positions, a, row + t);
   }
 }
 
+// Tables are copied, as in force.hpp.
 template <int D>
-void place(const SpringTable& springs, const double* q, const Positions& positions, int from,
-           int end) {
+void place(const SpringTable& table, const double* q, const Positions& places, int from, int end) {
+  const SpringTable springs = table;
+  const Positions positions = places;
   for (int slice = from; slice < end; ++slice) place_slice<D>(springs, q, slice, positions);
 }
 

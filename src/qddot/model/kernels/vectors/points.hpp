@@ -53,47 +53,56 @@ template <int D>
   });
 }
 
-// Coordinates first and first + 1 of two rows of four, in each half of a vector.
-template <int first>
-[[gnu::always_inline]] inline Lanes pairs(Lanes a, Lanes b) {
-  return shuffle(a, b, [](int t) { return t / 4 * 4 + first + t % 4 / 2 + t % 2 * lanes; });
+// The numbers of even places of both, or of odd ones, by turns.
+template <int odd>
+[[gnu::always_inline]] inline Lanes interleaved(Lanes a, Lanes b) {
+  return shuffle(a, b, [](int t) { return t / 2 * 2 + odd + t % 2 * lanes; });
 }
-template <int half>
-[[gnu::always_inline]] inline Lanes halves(Lanes a, Lanes b) {
-  return shuffle(a, b, [](int t) { return t / 4 * 4 + 2 * half + t % 2 + t % 4 / 2 * lanes; });
+// The even pairs of a, then those of b; or the odd pairs.
+template <int odd>
+[[gnu::always_inline]] inline Lanes pairs(Lanes a, Lanes b) {
+  constexpr int half = lanes / 2;
+  return shuffle(a, b, [](int t) { return t % half / 2 * 4 + 2 * odd + t % 2 + t / half * lanes; });
 }
 
-// x[a] = coordinate a of 4 points or, of 8, points t and t + 4 side by side in row[t].
+// The point whose numbers stand in the first four lanes of row t; in a vector of eight lanes, the
+// others are of the next point but one.
+constexpr int point_of_row(int t) { return lanes == 8 ? t / 2 * 4 + t % 2 : t; }
+
+// The four numbers at `first` and, in a vector of eight lanes, at `second`.
+[[gnu::always_inline]] inline Lanes load_points(const double* first, const double* second) {
+#ifdef __AVX512F__
+  const Lanes low = _mm512_castpd256_pd512(_mm256_loadu_pd(first));
+  return _mm512_insertf64x4(low, _mm256_loadu_pd(second), 1);
+#else
+  (void)second;
+  return load(first);
+#endif
+}
+
+// x[a] = coordinate a of the points in four rows; these are three steps of the fastest shuffles.
 template <int D>
 [[gnu::always_inline]] inline void transpose(const Lanes (&row)[4], Lanes (&x)[D]) {
-  const Lanes low = pairs<0>(row[0], row[1]), high = pairs<0>(row[2], row[3]);
-  x[0] = halves<0>(low, high);
-  x[1] = halves<1>(low, high);
-  if constexpr (D == 3) {
-    x[2] = halves<0>(pairs<2>(row[0], row[1]), pairs<2>(row[2], row[3]));
-  }
+  const Lanes xz = interleaved<0>(row[0], row[1]), xz_after = interleaved<0>(row[2], row[3]);
+  x[0] = pairs<0>(xz, xz_after);
+  x[1] = pairs<0>(interleaved<1>(row[0], row[1]), interleaved<1>(row[2], row[3]));
+  if constexpr (D == 3) x[2] = pairs<1>(xz, xz_after);
 }
 
 // x[a][t] = points[stride j[t] + a], by whole points and not by single numbers.
-template <int D, int width = lanes>
+template <int D>
 [[gnu::always_inline]] inline void gather(const double* points, const int* j, Lanes (&x)[D]) {
-  if constexpr (D == 1 || width < 4) {
+  if constexpr (D == 1 || lanes < 4) {
     for (int a = 0; a < D; ++a) {
-      for (int t = 0; t < width; ++t) x[a][t] = points[point_stride<D> * j[t] + a];
+      for (int t = 0; t < lanes; ++t) x[a][t] = points[point_stride<D> * j[t] + a];
     }
   } else {
-    // Points t and t + 4 side by side, then the transpose of each 4 x 4 block.
-    typedef double Point __attribute__((vector_size(4 * sizeof(double)), aligned(8), may_alias));
     const auto point = [&](int t) __attribute__((always_inline)) {
-      return *reinterpret_cast<const Point*>(points + point_stride<D> * j[t]);
+      return points + point_stride<D> * std::ptrdiff_t{j[t]};
     };
     Lanes row[4];
     unroll<4>([&]<int t>() __attribute__((always_inline)) {
-      if constexpr (width == 8) {
-        row[t] = __builtin_shufflevector(point(t), point(t + 4), 0, 1, 2, 3, 4, 5, 6, 7);
-      } else {
-        row[t] = point(t);
-      }
+      row[t] = load_points(point(point_of_row(t)), point(lanes == 8 ? point_of_row(t) + 2 : 0));
     });
     transpose<D>(row, x);
   }

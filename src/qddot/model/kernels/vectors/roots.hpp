@@ -63,8 +63,9 @@ template <int count>
                                                    Lanes (&half_inverse)[count]) {
   const Lanes one = 1 + Lanes{};
   Lanes g[count], h[count], e[count], c[count];
-  const auto for_each = [](const auto& body)
-      __attribute__((always_inline)) { unroll<count>(body); };
+  const auto for_each = [](const auto& body) __attribute__((always_inline)) {
+    unroll<count>(body);
+  };
   for_each([&]<int i>() __attribute__((always_inline)) {
 #ifdef __AVX512F__
     h[i] = _mm512_rsqrt14_pd(a[i]);
@@ -76,9 +77,8 @@ template <int count>
     g[i] = a[i] * h[i];
     h[i] = 0.5 * h[i];
   });
-  for_each([&]<int i>() __attribute__((always_inline)) {
-    e[i] = subtract_product(g[i], h[i], 0.5 * one);
-  });
+  for_each([&]<int i>()
+               __attribute__((always_inline)) { e[i] = subtract_product(g[i], h[i], 0.5 * one); });
   for_each([&]<int i>() __attribute__((always_inline)) {
 #ifdef __AVX512F__
     c[i] = 2.5 * one;
@@ -86,18 +86,16 @@ template <int count>
     c[i] = add_product(e[i], 4.375 * one, 2.5 * one);
 #endif
   });
-  for_each([&]<int i>() __attribute__((always_inline)) {
-    c[i] = add_product(e[i], c[i], 1.5 * one);
-  });
+  for_each([&]<int i>()
+               __attribute__((always_inline)) { c[i] = add_product(e[i], c[i], 1.5 * one); });
   for_each([&]<int i>() __attribute__((always_inline)) { c[i] = add_product(e[i], c[i], one); });
   for_each([&]<int i>() __attribute__((always_inline)) { c[i] = e[i] * c[i]; });
   for_each([&]<int i>() __attribute__((always_inline)) {
     g[i] = add_product(g[i], c[i], g[i]);
     half_inverse[i] = add_product(h[i], c[i], h[i]);
   });
-  for_each([&]<int i>() __attribute__((always_inline)) {
-    e[i] = subtract_product(g[i], g[i], a[i]);
-  });
+  for_each([&]<int i>()
+               __attribute__((always_inline)) { e[i] = subtract_product(g[i], g[i], a[i]); });
   for_each([&]<int i>() __attribute__((always_inline)) {
     root[i] = add_product(e[i], half_inverse[i], g[i]);
   });

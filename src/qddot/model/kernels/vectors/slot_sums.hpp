@@ -5,8 +5,10 @@
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
 
-// So many slots are computed side by side, as the registers allow.
-constexpr int slots_at_once = lanes == 8 ? 4 : 2;
+// So many slots are computed side by side, as measured: few where the processor's own divider is
+// busy anyway, and as many as the registers allow where estimates wait for each other.
+template <Roots roots>
+constexpr int slots_at_once = lanes == 8 && roots != Roots::processor ? 4 : 2;
 
 // Adds tau/l d of `count` slots, of which the first has the law *law; set_difference(i, d) sets the
 // d = x_j - x_i of slot i.
@@ -41,8 +43,9 @@ template <int D, int law_vectors, Roots roots>
   const auto difference = [&](int i, Lanes(&d)[D]) __attribute__((always_inline)) {
     for (int a = 0; a < D; ++a) d[a] = load(coordinate(positions, a, row + shift[i])) - x[a];
   };
-  for (; end - shift >= slots_at_once; shift += slots_at_once, law += slots_at_once) {
-    add_slots<D, law_vectors, roots, slots_at_once>(springs, law, part, range, sum, difference);
+  constexpr int many = slots_at_once<roots>;
+  for (; end - shift >= many; shift += many, law += many) {
+    add_slots<D, law_vectors, roots, many>(springs, law, part, range, sum, difference);
   }
   for (; shift < end; ++shift, ++law) {
     add_slots<D, law_vectors, roots, 1>(springs, law, part, range, sum, difference);
@@ -64,7 +67,7 @@ template <int D, int law_vectors, Roots roots>
     gather<D>(positions.points, places + i * slice_rows, d);
     for (int a = 0; a < D; ++a) d[a] -= x[a];
   };
-  constexpr int many = slots_at_once;
+  constexpr int many = slots_at_once<roots>;
   for (; end - places > (many - 1) * slice_rows; places += many * slice_rows, law += many) {
     add_slots<D, law_vectors, roots, many>(springs, law, part, range, sum, difference);
   }

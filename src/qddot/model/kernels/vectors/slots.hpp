@@ -30,8 +30,8 @@ template <int D>
 }
 
 // Visits the slots of a part of a slice: add_shift(s, slot, d, law) for every slot s of one shift,
-// then add_gather(slot, d, law) for all others. d = x_j - x_i of the part's rows; slots are numbered
-// within the slice.
+// then add_gather(slot, d, law) for all others. d = x_j - x_i of the part's rows; slots are
+// numbered within the slice.
 template <int D, class AddShift, class AddGather>
 [[gnu::always_inline]] inline void for_slots(const SpringTable& springs, int slice, int part,
                                              const Positions& positions, const AddShift& add_shift,
