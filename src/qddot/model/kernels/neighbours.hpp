@@ -26,6 +26,10 @@ struct Neighbours {
   int count(int node) const { return first[node + 1] - first[node]; }
 };
 
+// A product with this spreads the bits of a number over the first ones (Knuth, The Art of Computer
+// Programming 3, 6.4).
+constexpr unsigned long hash_factor = 0x9e3779b97f4a7c15;
+
 // Numbers laws. A law seen shortly before has the same number again, so that a grid has few.
 class LawNumbers {
  public:
@@ -35,8 +39,7 @@ class LawNumbers {
     std::array<unsigned long, 3> bits;
     static_assert(sizeof bits == sizeof law);
     std::memcpy(&bits, &law, sizeof bits);
-    constexpr unsigned long odd = 0x9e3779b97f4a7c15;  // spreads the bits (Knuth, TAOCP 3, 6.4)
-    int& recent = recent_[((bits[0] ^ bits[1] * 3 ^ bits[2] * 5) * odd) >> 58];
+    int& recent = recent_[((bits[0] ^ bits[1] * 3 ^ bits[2] * 5) * hash_factor) >> (64 - 6)];
     // By their bytes: zeros of both signs are different laws.
     if (recent < 0 || std::memcmp(&laws_[recent], &law, sizeof law) != 0) {
       recent = static_cast<int>(laws_.size());

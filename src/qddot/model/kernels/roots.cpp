@@ -30,6 +30,7 @@ class Sample {
                                          }
                                        }),
                          0);
+    for (int& place : slices_.gathers) place *= point_stride<3>;
     orders_.assign(slices_.count(), Order::by_slice);
     for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
     q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);

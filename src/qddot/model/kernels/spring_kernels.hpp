@@ -28,9 +28,9 @@ struct SlotLaw {
 // or with coordinates that are no unknowns.
 enum class Order { by_slice, by_row, none };
 
-// A ring buffer for tau/l of the springs of one shift, until the rows of their other ends follow. It
-// holds the numbers of the last `mask` + 1 rows, a power of two; its first rows are repeated behind
-// them.
+// A ring buffer for tau/l of the springs of one shift, until the rows of their other ends follow.
+// It holds the numbers of the last `mask` + 1 rows, a power of two; its first rows are repeated
+// behind them.
 struct Ring {
   int begin;  // in the memory of all rings
   int mask;
@@ -55,8 +55,9 @@ struct RingTerm {
   int shift, from, mask, begin;
 };
 
-// The terms of a slice of whose slots all are in rings: terms[first] and the following, one for each
-// slot. They read nothing of rows before its first row + reach. first < 0: some slot has no ring.
+// The terms of a slice of whose slots all are in rings: terms[first] and the following, one for
+// each slot. They read nothing of rows before its first row + reach. first < 0: some slot has no
+// ring.
 struct SliceTerms {
   int first, reach;
 };
@@ -77,7 +78,8 @@ constexpr int slices_of_block = 8;
 // The springs of a network; see NeighbourSlices and SpringsByNode.
 struct SpringTable {
   const Slice* slices;
-  const int *shifts, *gathers;
+  const int* shifts;
+  const int* gathers;        // where the points begin, see Positions
   const RingTable* rings;    // nullptr where there are none
   const SlotLaw* slot_laws;  // of all slots
   const double* laws;

@@ -58,6 +58,8 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout,
   slices_ = slice_neighbours(neighbours_of(nodes, for_each_end),
                              static_cast<int>(points_.size() + images_.size()));
   if (D > 1) rings_ = rings_of(slices_);
+  gathered_points_.reserve(slices_.gathers.size());
+  for (const int place : slices_.gathers) gathered_points_.push_back(point_stride<D> * place);
   ring_table_ = rings_.table();
   kernels_ = spring_kernels(D, can_be_estimated(slices_) ? roots() : Roots::processor);
 
@@ -90,7 +92,7 @@ template <int D>
 SpringTable SpringsByNode<D>::table() const {
   return {.slices = slices_.slices.data(),
           .shifts = slices_.shifts.data(),
-          .gathers = slices_.gathers.data(),
+          .gathers = gathered_points_.data(),
           .rings = rings_.rings.empty() ? nullptr : &ring_table_,
           .slot_laws = slices_.slot_laws.data(),
           .laws = slices_.laws.data(),

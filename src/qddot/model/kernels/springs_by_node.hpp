@@ -56,7 +56,9 @@ class SpringsByNode {
   static constexpr Index slots_worth_threads = 8000;
 
   // The weight as kernels read it: 24 numbers in place of n if it is the same for all nodes.
-  Offset offset() const { return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr}; }
+  Offset offset() const {
+    return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr};
+  }
   // Memory for all places: this thread's until the next call. There are two.
   Positions memory(int which = 0) const;
   // The same with all of them at q.
@@ -73,8 +75,9 @@ class SpringsByNode {
   NeighbourSlices slices_;
   Rings rings_;
   RingTable ring_table_{};
-  std::vector<int> unknowns_;  // D of each row
-  std::vector<Order> order_;   // of the slices
+  std::vector<int> gathered_points_;  // where the points of the slices' gathers begin
+  std::vector<int> unknowns_;         // D of each row
+  std::vector<Order> order_;          // of the slices
 };
 
 template <int D>

@@ -89,16 +89,16 @@ template <int D>
   if constexpr (D == 3) x[2] = pairs<1>(xz, xz_after);
 }
 
-// x[a][t] = points[stride j[t] + a], by whole points and not by single numbers.
+// x[a][t] = points[j[t] + a], by whole points and not by single numbers.
 template <int D>
 [[gnu::always_inline]] inline void gather(const double* points, const int* j, Lanes (&x)[D]) {
   if constexpr (D == 1 || lanes < 4) {
     for (int a = 0; a < D; ++a) {
-      for (int t = 0; t < lanes; ++t) x[a][t] = points[point_stride<D> * j[t] + a];
+      for (int t = 0; t < lanes; ++t) x[a][t] = points[j[t] + a];
     }
   } else {
     const auto point = [&](int t) __attribute__((always_inline)) {
-      return points + point_stride<D> * std::ptrdiff_t{j[t]};
+      return points + j[t];
     };
     Lanes row[4];
     unroll<4>([&]<int t>() __attribute__((always_inline)) {
