@@ -15,6 +15,7 @@
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/machine_limits.hpp"
+#include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_limits.hpp"
 
@@ -95,13 +96,14 @@ struct StepPhases {
   }
 };
 
-// A spring's k and l0 are read at each of its ends (see SpringsByNode). An unknown's q and weight
-// are read, its f is written, and its position goes to memory and back.
-constexpr double bytes_of_spring = 2 * 2 * sizeof(double);
-constexpr double bytes_of_unknown = 5 * sizeof(double);
-// Operations at each end. d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l:
-// 1; f_i += (tau/l) d: 6.
-constexpr double flops_of_spring = 2 * 18;
+// Eight springs are one job of a ring (see Rings); their laws and the weights are the same
+// everywhere and stay in the cache. An unknown's q is read, its f is written, and its position goes
+// to memory and back.
+constexpr double bytes_of_spring = sizeof(kernels::RingJob) / double{kernels::slice_rows};
+constexpr double bytes_of_unknown = 4 * sizeof(double);
+// Operations of a job: d = x_j - x_i: 3; l^2 = d.d: 5; l: 1; s = l - l0: 1; tau = k s: 1; tau/l: 1.
+// At each end: d: 3; f_i += (tau/l) d: 6.
+constexpr double flops_of_spring = 12 + 2 * 9;
 
 // The least time [s] of a timed run, unless that takes more than the most steps. Short runs are
 // disturbed least.

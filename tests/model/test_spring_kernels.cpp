@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 #include <omp.h>
+#include <tuple>
 
 #include <boost/test/unit_test.hpp>
 
@@ -170,6 +171,24 @@ BOOST_AUTO_TEST_CASE(a_spring_of_no_length_has_no_direction) {
   }
 }
 
+// Weights are read for one slice alone if they are the same for all nodes, and node by node if one
+// differs. Its force is its weight where no spring pulls.
+BOOST_AUTO_TEST_CASE(every_node_has_its_own_weight) {
+  for (const int dimension : {2, 3}) {
+    for (const Index heavy : {-1, 0, 70, 440}) {
+      Grid g = grid(dimension, 21, in_order(21 * 21));
+      g.network.gravity = {1, -2, 3};
+      if (heavy >= 0) g.network.node_mass[heavy] = 5;
+      check_against_plain(g.network, g.q);
+      for (auto& link : g.network.links) link.law = {.stiffness = 0};
+      const Vec f = force_at(*make_mass_spring(g.network, Forces::by_vectors), g.q);
+      for (Index i = 0; i < f.size(); ++i) {
+        BOOST_TEST(f[i] == g.network.node_mass[i / dimension] * g.network.gravity[i % dimension]);
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(they_are_the_same_to_the_bit_with_any_number_of_threads) {
   const int before = omp_get_max_threads();
   for (const auto& order : {in_order(150 * 150), shuffled(150 * 150)}) {
@@ -184,6 +203,59 @@ BOOST_AUTO_TEST_CASE(they_are_the_same_to_the_bit_with_any_number_of_threads) {
     }
   }
   omp_set_num_threads(before);
+}
+
+// Ends of springs, as (node, point, k, l0), of nodes and of slots: grids whose lines end or whose
+// nodes miss springs here and there, which share plans of slots and numbers of laws, and a mesh.
+BOOST_AUTO_TEST_CASE(slots_hold_every_spring_once_from_each_end) {
+  std::mt19937 random(7);
+  using End = std::tuple<int, int, double, double>;
+  for (const auto& order : {in_order(40 * 40), shuffled(40 * 40)}) {
+    for (const int missing : {0, 1, 5, 300}) {
+      Network network = grid(3, 40, order).network;
+      for (int i = 0; i < missing; ++i) {
+        network.links.erase(network.links.begin() +
+                            static_cast<Index>(random() % network.links.size()));
+      }
+      for (std::size_t e = 0; e < network.links.size(); e += 7) network.links[e].law = {50, 1, 0};
+      const Neighbours neighbours = neighbours_in(network);
+      std::vector<End> expected, listed, found;
+      for (const auto& link : network.links) {
+        expected.emplace_back(link.i, link.j, link.law.stiffness, link.law.rest_length);
+        expected.emplace_back(link.j, link.i, link.law.stiffness, link.law.rest_length);
+      }
+      for (int i = 0; i < neighbours.nodes(); ++i) {
+        for (int e = neighbours.first[i]; e < neighbours.first[i + 1]; ++e) {
+          const SpringLaw& law = neighbours.laws[neighbours.ends[e].law];
+          listed.emplace_back(i, neighbours.ends[e].point, law.stiffness, law.rest_length);
+        }
+      }
+      const NeighbourSlices slices = slice_neighbours(neighbours, 0);
+      for (int slice = 0; slice < slices.count(); ++slice) {
+        const Slice begin = slices.slices[slice], end = slices.slices[slice + 1];
+        const SlotLaw* law = slices.slot_laws.data() + begin.slot();
+        const auto take = [&](const auto& place_of) {
+          for (int t = 0; t < slice_rows; ++t) {
+            const double stiffness = slices.laws[law->stiffness + t];
+            if (stiffness == 0) continue;
+            found.emplace_back(slices.node[slice * slice_rows + t], slices.node[place_of(t)],
+                               stiffness, slices.laws[law->rest_length + t]);
+          }
+          ++law;
+        };
+        for (int s = begin.shift; s < end.shift; ++s) {
+          take([&](int t) { return slice * slice_rows + t + slices.shifts[s]; });
+        }
+        for (int s = begin.gather; s < end.gather; s += slice_rows) {
+          take([&](int t) { return slices.gathers[s + t]; });
+        }
+        BOOST_TEST((law == slices.slot_laws.data() + end.slot()));
+      }
+      for (auto* ends : {&expected, &listed, &found}) std::ranges::sort(*ends);
+      BOOST_TEST((listed == expected));
+      BOOST_TEST((found == expected));
+    }
+  }
 }
 
 // A grid's slots have one shift, except at the ends of its lines. If its nodes have no order, slots

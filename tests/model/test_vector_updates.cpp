@@ -53,8 +53,8 @@ BOOST_AUTO_TEST_CASE(quotients_are_the_nearest_numbers) {
     return std::uniform_int_distribution<int>(-most, most)(random);
   };
   constexpr double inf = std::numeric_limits<double>::infinity();
-  const std::array<double, 8> special = {0.0,     -0.0, 0x1p-800, 0x1p800, 0x1p-1074, -0x1p1000,
-                                         0x1p-400, inf};
+  const std::array<double, 8> special = {0.0,       -0.0,      0x1p-800, 0x1p800,
+                                         0x1p-1074, -0x1p1000, 0x1p-400, inf};
   constexpr Index n = 67;
   for (int trial = 0; trial < 20000; ++trial) {
     Vec m(n), f(n), out(n);

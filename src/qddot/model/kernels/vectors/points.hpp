@@ -97,9 +97,7 @@ template <int D>
       for (int t = 0; t < lanes; ++t) x[a][t] = points[j[t] + a];
     }
   } else {
-    const auto point = [&](int t) __attribute__((always_inline)) {
-      return points + j[t];
-    };
+    const auto point = [&](int t) __attribute__((always_inline)) { return points + j[t]; };
     Lanes row[4];
     unroll<4>([&]<int t>() __attribute__((always_inline)) {
       row[t] = load_points(point(point_of_row(t)), point(lanes == 8 ? point_of_row(t) + 2 : 0));

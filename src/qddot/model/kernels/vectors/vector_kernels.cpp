@@ -15,38 +15,42 @@ void add_scaled(const double* x, double c, const double* z, double* out, std::pt
 
 void add_quotient(const double* x, double c, const double* f, const Masses& masses, double* out,
                   std::ptrdiff_t n) {
-  with_quotients(masses, [&](const auto& quotient) __attribute__((always_inline)) {
-    std::ptrdiff_t i = 0;
-    for (; i + lanes <= n; i += lanes)
-      store(out + i, add_product(c + Lanes{}, quotient(load(f + i), i), load(x + i)));
-    for (; i < n; ++i) out[i] = add_product(c, f[i] / masses.m[i], x[i]);
-  });
+  with_quotients(
+      masses, [&](const auto& quotient) __attribute__((always_inline)) {
+        std::ptrdiff_t i = 0;
+        for (; i + lanes <= n; i += lanes)
+          store(out + i, add_product(c + Lanes{}, quotient(load(f + i), i), load(x + i)));
+        for (; i < n; ++i) out[i] = add_product(c, f[i] / masses.m[i], x[i]);
+      });
 }
 
 void kick_and_drift(const double* q, const double* v, const double* f, const Masses& masses,
                     double c0, double c, double h, double* q_next, double* w, std::ptrdiff_t n) {
-  with_quotients(masses, [&](const auto& quotient) __attribute__((always_inline)) {
-    std::ptrdiff_t i = 0;
-    for (; i + lanes <= n; i += lanes) {
-      const Lanes a = quotient(load(f + i), i);
-      const Lanes kicked = add_product(c + Lanes{}, a, add_product(c0 + Lanes{}, a, load(v + i)));
-      store(w + i, kicked);
-      store(q_next + i, add_product(h + Lanes{}, kicked, load(q + i)));
-    }
-    for (; i < n; ++i) {
-      const double a = f[i] / masses.m[i];
-      w[i] = add_product(c, a, add_product(c0, a, v[i]));
-      q_next[i] = add_product(h, w[i], q[i]);
-    }
-  });
+  with_quotients(
+      masses, [&](const auto& quotient) __attribute__((always_inline)) {
+        std::ptrdiff_t i = 0;
+        for (; i + lanes <= n; i += lanes) {
+          const Lanes a = quotient(load(f + i), i);
+          const Lanes kicked =
+              add_product(c + Lanes{}, a, add_product(c0 + Lanes{}, a, load(v + i)));
+          store(w + i, kicked);
+          store(q_next + i, add_product(h + Lanes{}, kicked, load(q + i)));
+        }
+        for (; i < n; ++i) {
+          const double a = f[i] / masses.m[i];
+          w[i] = add_product(c, a, add_product(c0, a, v[i]));
+          q_next[i] = add_product(h, w[i], q[i]);
+        }
+      });
 }
 
 void divide(const double* f, const Masses& masses, double* out, std::ptrdiff_t n) {
-  with_quotients(masses, [&](const auto& quotient) __attribute__((always_inline)) {
-    std::ptrdiff_t i = 0;
-    for (; i + lanes <= n; i += lanes) store(out + i, quotient(load(f + i), i));
-    for (; i < n; ++i) out[i] = f[i] / masses.m[i];
-  });
+  with_quotients(
+      masses, [&](const auto& quotient) __attribute__((always_inline)) {
+        std::ptrdiff_t i = 0;
+        for (; i + lanes <= n; i += lanes) store(out + i, quotient(load(f + i), i));
+        for (; i < n; ++i) out[i] = f[i] / masses.m[i];
+      });
 }
 
 void multiply(const double* a, const double* b, double* out, std::ptrdiff_t n) {
@@ -184,14 +188,15 @@ double squared_norm(const double* x, std::ptrdiff_t n) {
 
 double squared_norm_of_kicked(const double* v, double c, const double* f, const Masses& masses,
                               std::ptrdiff_t n) {
-  return with_quotients(masses, [&](const auto& quotient) __attribute__((always_inline)) {
-    return sum_of_squares(
-        n,
-        [&](std::ptrdiff_t i) __attribute__((always_inline)) {
-          return add_product(c + Lanes{}, quotient(load(f + i), i), load(v + i));
-        },
-        [&](std::ptrdiff_t i) { return add_product(c, f[i] / masses.m[i], v[i]); });
-  });
+  return with_quotients(
+      masses, [&](const auto& quotient) __attribute__((always_inline)) {
+        return sum_of_squares(
+            n,
+            [&](std::ptrdiff_t i) __attribute__((always_inline)) {
+              return add_product(c + Lanes{}, quotient(load(f + i), i), load(v + i));
+            },
+            [&](std::ptrdiff_t i) { return add_product(c, f[i] / masses.m[i], v[i]); });
+      });
 }
 
 // x/(rtol |y| + atol)
