@@ -6,6 +6,7 @@
 
 #include "qddot/algebra/factors.hpp"
 #include "qddot/algebra/large_array.hpp"
+#include "qddot/algebra/multifrontal/fetch_ahead.hpp"
 #include "qddot/algebra/multifrontal/front_kernels.hpp"
 #include "qddot/algebra/multifrontal/fronts.hpp"
 #include "qddot/algebra/multifrontal/team.hpp"
@@ -21,12 +22,12 @@ constexpr int height = strip_height;
 
 // The memory that fronts need one after the other, for one thread or a team.
 struct Workspace {
-  // `scaled` holds L D in a tile's rows or, for a team, in all rows.
+  // `scaled` holds L D in the panel's rows, then in a tile's or, for a team, in all rows below.
   Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
       : updates(sizes.updates),
         columns(sizes.pivot_columns + height),  // kernels write the last vector of a column whole
-        scaled(Index{panel} *
-               (for_team ? sizes.height + height * tile_strips : height * tile_strips)) {}
+        scaled(Index{panel} * std::max(panel, for_team ? sizes.height + height * tile_strips
+                                                       : height * tile_strips)) {}
 
   LargeArray updates;
   LargeArray columns;  // of the present front's pivots, until they are columns of L
@@ -39,13 +40,14 @@ struct Workspace {
 // sum in the same order.
 class Multifrontal : public Factors {
  public:
-  Multifrontal(const SymmetricMatrix& pattern, Vec diagonal, SymbolicFactorization symbolic)
-      : diagonal_(std::move(diagonal)),
+  Multifrontal(const SymmetricMatrix& pattern, const Vec& diagonal, SymbolicFactorization symbolic)
+      : diagonal_(diagonal.size()),
         fronts_(pattern, std::move(symbolic)),
         l_(fronts_.factor_size),
         pivot_(pattern.rows()),
         top_(fronts_.top_sizes, kernels_.tile_strips, true),
         solves_(fronts_, l_.get(), pivot_.get()) {
+    for (Index i = 0; i < diagonal.size(); ++i) diagonal_[fronts_.place()[i]] = diagonal[i];
     add_workspaces(1);
   }
 
@@ -145,6 +147,7 @@ class Multifrontal : public Factors {
             {.columns = own.columns.get(),
              .update = update(f, own),
              .factor = l_.get() + f.factor,
+             .first = f.first,
              .pivots = f.pivots,
              .pivot_height = f.pivot_height(),
              .height = f.height()}};
@@ -156,7 +159,7 @@ class Multifrontal : public Factors {
     assemble_pivots(task, open, team);
     for (int from = 0; from < open.f.pivots; from += panel) {
       const int end = std::min(from + panel, open.f.pivots);
-      if (!eliminate(open, from, end, task.only_positive, team)) return false;
+      if (!eliminate(task, open, from, end, team)) return false;
     }
     if (fronts_.children(open.f).empty()) return true;
     const int pivot_height = open.f.pivot_height();
@@ -174,14 +177,12 @@ class Multifrontal : public Factors {
     team.share_parts(f.pivot_strips(), 1, [&](int from, int end) {
       from *= height;
       end *= height;
-      const auto in_columns = [&](std::span<const Entry> entries) {
-        const auto begin = std::ranges::lower_bound(entries, from * f.height(), {}, &Entry::target);
-        const auto last =
-            std::ranges::lower_bound(begin, entries.end(), end * f.height(), {}, &Entry::target);
-        return Entries{std::to_address(begin), std::to_address(last)};
-      };
-      kernels_.assemble(open.matrix, task, in_columns(fronts_.entries(f)),
-                        in_columns(fronts_.diagonal(f)), from, end);
+      const std::span<const Entry> entries = fronts_.entries(f);
+      const auto start =
+          from == 0 ? entries.begin()
+                    : std::ranges::lower_bound(entries, from * f.height(), {}, &Entry::target);
+      kernels_.assemble(open.matrix, task, {std::to_address(start), std::to_address(entries.end())},
+                        from, end);
       for (const int child : fronts_.children(f)) add_update(child, open, from, end);
     });
   }
@@ -201,29 +202,36 @@ class Multifrontal : public Factors {
 
   // Eliminates the pivots [from, end) and subtracts their part from the rest. Returns whether to
   // continue.
-  bool eliminate(const Open& open, int from, int end, bool only_positive, Team& team) {
+  bool eliminate(const Task& task, const Open& open, int from, int end, Team& team) {
     const Front& f = open.f;
     const int first = from / height, after = strips_of(end);
     const int tile_strips = kernels_.tile_strips;
-    const auto tile = [&](int i) { return std::min(tile_strips, f.strips() - i); };
-    const auto divide = [&](int until, int i, int strips, double* scaled) {
-      kernels_.divide(open.matrix, from, until, i, strips, open.w.blocks.data(), scaled);
+    const auto divide = [&](int begin, int until, int i, int last, double* scaled) {
+      kernels_.divide(open.matrix, from, begin, until, i, std::min(tile_strips, last - i),
+                      open.w.blocks.data(), scaled);
     };
+    // The panel's own rows: each block is divided by as soon as it is factorised.
     team.share(1, [&](int) {
-      for (int i = first; i < after && !failed_; ++i) {
-        divide(i, i, 1, scaled(open, 0));
-        factorize_block(open, from, i, only_positive);
+      const auto row = [&](int i) { return scaled(open, 0) + (i - first) * panel * height; };
+      for (int j = first; j < after && !failed_; ++j) {
+        factorize_block(open, from, j, row(j), task.only_positive);
+        for (int i = j + 1; i < after; i += tile_strips) divide(j, j + 1, i, after, row(i));
       }
     });
     if (failed_) return false;
+    const auto tile = [&](int i) { return std::min(tile_strips, f.strips() - i); };
     const int tiles = (f.strips() - after + tile_strips - 1) / tile_strips;
+    const Front* next = &f + 1;
+    FetchAhead ahead(
+        task.k, next == fronts_.end() ? std::span<const Entry>() : fronts_.entries(*next), tiles);
     for (int i = after; team.alone() && i < f.strips(); i += tile_strips) {
-      divide(after, i, tile(i), scaled(open, 0));
+      if (from == 0) ahead.fetch_share();
+      divide(first, after, i, f.strips(), scaled(open, 0));
       kernels_.subtract_from_rest(open.matrix, from, end, i, tile(i), scaled(open, 0));
     }
     if (team.alone()) return true;
     const auto row = [&](int t) { return after + t * tile_strips; };
-    team.share(tiles, [&](int t) { divide(after, row(t), tile(row(t)), scaled(open, t)); });
+    team.share(tiles, [&](int t) { divide(first, after, row(t), f.strips(), scaled(open, t)); });
     team.share(tiles, [&](int t) {
       t = tiles - 1 - t;  // the longest first
       kernels_.subtract_from_rest(open.matrix, from, end, row(t), tile(row(t)), scaled(open, t));
@@ -236,12 +244,13 @@ class Multifrontal : public Factors {
     return open.w.scaled.get() + Index{t} * kernels_.tile_strips * panel * height;
   }
 
-  // The block of strip i on the diagonal.
-  void factorize_block(const Open& open, int from, int i, bool only_positive) {
+  // The block of strip i on the diagonal; `scaled` is L D in the panel's columns before it.
+  void factorize_block(const Open& open, int from, int i, const double* scaled,
+                       bool only_positive) {
     const Front& f = open.f;
     const int k = std::min(height, f.pivots - i * height), first = f.first + i * height;
     Block& block = open.w.blocks[i - from / height];
-    kernels_.factorize_block(open.matrix, from, i, scaled(open, 0), block);
+    kernels_.factorize_block(open.matrix, from, i, scaled, block);
     if (!block.regular || (only_positive && block.negative > 0)) failed_ = true;
     open.w.negative += block.negative;
     std::copy_n(block.pivot, k, pivot_.get() + first);
@@ -249,7 +258,7 @@ class Multifrontal : public Factors {
   }
 
   const FrontKernels& kernels_ = front_kernels();
-  Vec diagonal_;
+  Vec diagonal_;  // D in the order of elimination
   Fronts fronts_;
   LargeArray l_, pivot_;
   std::vector<Workspace> workspaces_;  // of threads, for branches

@@ -19,15 +19,18 @@ struct Run {
   int from, to, length;
 };
 
-// An entry of K or D, and its place in the columns of its front's pivots.
+// Entries of K that are neighbours, and are so too in the columns of their front's pivots: in one
+// column or, `across`, in one row of a strip of columns.
 struct Entry {
   int source, target;
+  short length;
+  bool across;
 };
 struct Entries {
   const Entry *begin, *end;
 };
 
-// The matrix a D - s K by the values of D and K.
+// The matrix a D - s K by the values of D, in the order of elimination, and of K.
 struct Combination {
   double a, s;
   const double *diagonal, *k;
@@ -47,7 +50,7 @@ struct OpenFront {
   double* columns;  // of the pivots, until they are columns of L
   double* update;
   double* factor;  // its part of L
-  int pivots, pivot_height, height;
+  int first, pivots, pivot_height, height;
 };
 
 // A child's update and its runs that end in the columns it is added to, or after them.
@@ -70,8 +73,7 @@ struct FrontKernels {
   int tile_strips;
 
   // Writes the matrix' entries of the lower triangle in the pivots' columns [from, end).
-  void (*assemble)(const OpenFront&, const Combination&, Entries of_k, Entries of_diagonal,
-                   int from, int end);
+  void (*assemble)(const OpenFront&, const Combination&, Entries, int from, int end);
   // Adds a child's update in the columns [from, end), all of pivots or none.
   void (*add_update)(const ChildUpdate&, const OpenFront&, int from, int end);
 
@@ -79,9 +81,9 @@ struct FrontKernels {
   // columns of L D in the rows of a tile, in strips of `panel` columns. Block i is the diagonal
   // block of strip i.
   void (*factorize_block)(const OpenFront&, int from, int i, const double* scaled, Block&);
-  // Computes strips i, ... of L and L D in the panel's columns, up to those of strip `end`.
-  void (*divide)(const OpenFront&, int from, int end, int i, int strips, const Block* blocks,
-                 double* scaled);
+  // Computes strips i, ... of L and L D in the panel's columns, those of strips [begin, end).
+  void (*divide)(const OpenFront&, int from, int begin, int end, int i, int strips,
+                 const Block* blocks, double* scaled);
   // Subtracts the part of pivots [from, end) from the strips i, ... after them. The first pivots
   // start the update.
   void (*subtract_from_rest)(const OpenFront&, int from, int end, int i, int strips,

@@ -48,40 +48,48 @@ Fronts::Fronts(const SymmetricMatrix& pattern, SymbolicFactorization symbolic) {
     for (const int row : rows(f)) position[row] = next++;
 
     f.entry_start = static_cast<int>(entries_.size());
-    f.diagonal_start = static_cast<int>(diagonal_.size());
     for (; entry != placed.end() && entry->column < f.first + f.pivots; ++entry) {
       const int target = position[entry->row] + (entry->column - f.first) * f.height();
-      entries_.push_back({entry->source, target});
-      if (entry->row == entry->column) diagonal_.push_back({entry->unknown, target});
+      entries_.push_back({entry->source, target, entry->length, entry->across});
     }
     f.entry_end = static_cast<int>(entries_.size());
-    f.diagonal_end = static_cast<int>(diagonal_.size());
-
     f.child_start = static_cast<int>(children_.size());
     f.child_end = append(children_, children[s]);
     for (const int c : children[s]) add_runs(all_[c], position);
   }
 }
 
-// The entries of a matrix by columns, and by rows in each column, in the order of elimination.
+// The entries of a matrix by columns, in the order of elimination: up to three together, such as
+// those of a node. They do not leave the pivots of one front, nor its strip of columns, as threads
+// divide strips among themselves.
 std::vector<Fronts::Placed> Fronts::in_order_of_elimination(const SymmetricMatrix& pattern) const {
+  constexpr short most = 3;
+  std::vector<int> pivot(place_.size());  // among those of its front
+  for (const Front& f : all_) std::iota(&pivot[f.first], &pivot[f.first] + f.pivots, 0);
   std::vector<Placed> placed;
-  placed.reserve(pattern.nonZeros());
+  std::vector<int> start(pattern.cols() + 1);
   for (int j = 0; j < pattern.cols(); ++j) {
-    for (int e = pattern.outerIndexPtr()[j]; e < pattern.outerIndexPtr()[j + 1]; ++e) {
-      const auto [column, row] = std::minmax(place_[pattern.innerIndexPtr()[e]], place_[j]);
-      placed.push_back({e, j, column, row});
+    const auto place = [&](int e) { return place_[pattern.innerIndexPtr()[e]]; };
+    const int end = pattern.outerIndexPtr()[j + 1];
+    for (int e = pattern.outerIndexPtr()[j]; e < end;) {
+      const int source = e, first = place(e);
+      const bool across = first < place_[j];
+      short length = 1;
+      const auto continues = [&](int next) {
+        return length < most && next == first + length &&
+               (across ? pivot[next] % strip_height : pivot[next]) != 0 &&
+               across == (next < place_[j]);
+      };
+      while (++e < end && continues(place(e))) ++length;
+      const auto [column, row] = std::minmax(first, place_[j]);
+      placed.push_back({source, column, row, length, across});
+      ++start[column + 1];
     }
   }
-  for (const auto key : {&Placed::row, &Placed::column}) {
-    std::vector<int> start(pattern.cols() + 1);
-    for (const Placed& p : placed) ++start[p.*key + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Placed> sorted(placed.size());
-    for (const Placed& p : placed) sorted[start[p.*key]++] = p;
-    placed = std::move(sorted);
-  }
-  return placed;
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<Placed> sorted(placed.size());
+  for (const Placed& p : placed) sorted[start[p.column]++] = p;
+  return sorted;
 }
 
 void Fronts::add_runs(Front& child, const std::vector<int>& position) {

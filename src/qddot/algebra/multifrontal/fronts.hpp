@@ -18,7 +18,6 @@ struct Front {
   bool kept;             // the update is for a front above the branches
   int row_start, row_end;
   int entry_start, entry_end;
-  int diagonal_start, diagonal_end;
   int run_start, run_end;
   int child_start, child_end;
 
@@ -53,12 +52,9 @@ class Fronts {
   const std::vector<int>& place() const { return place_; }
 
   std::span<const int> rows(const Front& f) const { return part(rows_, f.row_start, f.row_end); }
-  // The front's entries of K, by ascending target.
+  // The front's entries of K, by strips of columns.
   std::span<const Entry> entries(const Front& f) const {
     return part(entries_, f.entry_start, f.entry_end);
-  }
-  std::span<const Entry> diagonal(const Front& f) const {
-    return part(diagonal_, f.diagonal_start, f.diagonal_end);
   }
   // The rows of the front's update as rows of its parent.
   std::span<const Run> runs(const Front& f) const { return part(runs_, f.run_start, f.run_end); }
@@ -81,9 +77,11 @@ class Fronts {
   static std::span<const T> part(const std::vector<T>& all, int start, int end) {
     return std::span(all).subspan(start, end - start);
   }
-  // An entry of K in the order of elimination, in the column of `unknown`.
+  // Neighbours among the entries of K, in the order of elimination.
   struct Placed {
-    int source, unknown, column, row;
+    int source, column, row;
+    short length;
+    bool across;
   };
   std::vector<Placed> in_order_of_elimination(const SymmetricMatrix& pattern) const;
   // `position`: of its parent's rows.
@@ -94,7 +92,7 @@ class Fronts {
   std::vector<Front> all_;
   std::vector<Branch> branches_;
   std::vector<int> top_, place_, rows_, children_;
-  std::vector<Entry> entries_, diagonal_;
+  std::vector<Entry> entries_;
   std::vector<Run> runs_;
 };
 

@@ -17,21 +17,31 @@ double* factor(const OpenFront& f, int i, int k) {
   return f.factor + (std::ptrdiff_t{i} * f.pivots + k) * height;
 }
 
-void assemble(const OpenFront& f, const Combination& matrix, Entries of_k, Entries of_diagonal,
-              int from, int end) {
-  for (int j = from; j < end; ++j) {
-    double* to = f.columns + std::ptrdiff_t{j} * f.height;
-    for (int i = j / height * height; i < f.height; ++i) to[i] = 0;
-  }
-  for (const Entry* e = of_k.begin; e < of_k.end; ++e) {
-    f.columns[e->target] = -matrix.s * matrix.k[e->source];
-  }
-  for (const Entry* e = of_diagonal.begin; e < of_diagonal.end; ++e) {
-    f.columns[e->target] += matrix.a * matrix.diagonal[e->source];
-  }
-  // The columns that fill up the last strip are those of the identity.
-  for (int j = f.pivots > from ? f.pivots : from; j < end; ++j) {
-    f.columns[std::ptrdiff_t{j} * (f.height + 1)] = 1;
+// Strip by strip, whose columns stay in the first cache.
+void assemble(const OpenFront& f, const Combination& matrix, Entries of_k, int from, int end) {
+  const double minus_s = -matrix.s;
+  const Entry* e = of_k.begin;
+  for (int first = from; first < end; first += height) {
+    double* columns = f.columns + std::ptrdiff_t{first} * f.height;
+    for (int j = 0; j < height; ++j) {
+      for (int i = first; i < f.height; i += lanes) store(columns + j * f.height + i, Lanes{});
+    }
+    const int next = (first + height) * f.height;
+    for (; e < of_k.end && e->target < next; ++e) {
+      const double* k = matrix.k + e->source;
+      double* to = f.columns + e->target;
+      const std::ptrdiff_t stride = e->across ? f.height : 1;
+      // Three without branches: one or two are written again.
+      const int last = e->length - 1, middle = last < 1 ? last : 1;
+      to[0] = minus_s * k[0];
+      to[middle * stride] = minus_s * k[middle];
+      to[last * stride] = minus_s * k[last];
+    }
+    // The columns that fill up the last strip are those of the identity.
+    for (int j = first; j < first + height; ++j) {
+      double& pivot = f.columns[std::ptrdiff_t{j} * (f.height + 1)];
+      pivot = j < f.pivots ? pivot + matrix.a * matrix.diagonal[f.first + j] : 1;
+    }
   }
 }
 
@@ -54,17 +64,14 @@ void add_update(const ChildUpdate& child, const OpenFront& f, int first, int end
   }
 }
 
-void divide(const OpenFront& f, int from, int end, int i, int strips, const Block* blocks,
-            double* scaled) {
-  for (int j = from / height; j < end; ++j) {
+void divide(const OpenFront& f, int from, int begin, int end, int i, int strips,
+            const Block* blocks, double* scaled) {
+  for (int j = begin; j < end; ++j) {
     const int k = j * height - from, after = f.pivots - j * height;
     const int columns = height < after ? height : after;
-    double* a = column(f, j * height) + i * height;
-    subtract<false>(a, f.height, scaled, panel * height, factor(f, j, from), k, strips);
-    for (int t = 0; t < strips; ++t) {
-      divide_strip(a + t * height, f.height, blocks[j - from / height], columns,
-                   factor(f, i + t, j * height), scaled + (t * panel + k) * height);
-    }
+    divide(column(f, j * height) + i * height, f.height, scaled, panel * height, factor(f, j, from),
+           k, blocks[j - from / height], columns, factor(f, i, j * height),
+           std::ptrdiff_t{f.pivots} * height, strips);
   }
 }
 

@@ -20,8 +20,30 @@ constexpr int tile_columns = lanes;
 
 constexpr LaneNumbers first_places = lane_numbers([](int t) { return t; });
 
-// C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A: strips `stride` apart, of k
-// columns; W: the first `tile_columns` rows of a strip of k columns.
+// The tile A W'. A: strips `stride` apart, of k columns; W: the first `tile_columns` rows of a
+// strip of k columns.
+template <int strips>
+[[gnu::always_inline]] inline void multiply(const double* a, std::ptrdiff_t stride, const double* w,
+                                            int k, Lanes (&sum)[tile_columns][strips * vectors]) {
+  constexpr int rows = strips * vectors;
+#pragma GCC unroll 16
+  for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+    for (int i = 0; i < rows; ++i) sum[j][i] = Lanes{};
+  }
+  for (int p = 0; p < k; ++p, a += height, w += height) {
+    Lanes x[rows];
+#pragma GCC unroll 16
+    for (int i = 0; i < rows; ++i) x[i] = load(a + i / vectors * stride + i % vectors * lanes);
+#pragma GCC unroll 16
+    for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < rows; ++i) sum[j][i] += x[i] * w[j];
+    }
+  }
+}
+
+// C = C - A W', or C = -A W' where `fresh`. C: columns `ld` apart; A and W as above.
 template <int strips, bool fresh>
 inline void subtract_tile(double* c, std::ptrdiff_t ld, const double* a, std::ptrdiff_t stride,
                           const double* w, int k) {
@@ -34,17 +56,8 @@ inline void subtract_tile(double* c, std::ptrdiff_t ld, const double* a, std::pt
       for (int i = 0; i < strips; ++i) __builtin_prefetch(c + j * ld + i * height, 1);
     }
   }
-  Lanes sum[tile_columns][rows] = {};
-  for (int p = 0; p < k; ++p, a += height, w += height) {
-    Lanes x[rows];
-#pragma GCC unroll 16
-    for (int i = 0; i < rows; ++i) x[i] = load(a + i / vectors * stride + i % vectors * lanes);
-#pragma GCC unroll 16
-    for (int j = 0; j < tile_columns; ++j) {
-#pragma GCC unroll 16
-      for (int i = 0; i < rows; ++i) sum[j][i] += x[i] * w[j];
-    }
-  }
+  Lanes sum[tile_columns][rows];
+  multiply<strips>(a, stride, w, k, sum);
 #pragma GCC unroll 16
   for (int j = 0; j < tile_columns; ++j) {
 #pragma GCC unroll 16
@@ -83,12 +96,17 @@ template <int i>
 }
 
 // Y = Y + X, n rows of columns x_ld and y_ld apart. A column's last vector is read and written
-// whole, beyond it unchanged.
+// whole, beyond it unchanged. Long columns come from farther caches: they are fetched before.
 inline void add(const double* x, std::ptrdiff_t x_ld, int n, int columns, double* y,
                 std::ptrdiff_t y_ld) {
-  const int whole = n / lanes * lanes;
+  constexpr int ahead = 8;
+  const int fetched = n < 64 ? 0 : n, whole = n / lanes * lanes;
   const auto rest = first_places < n - whole;
   for (int j = 0; j < columns; ++j, x += x_ld, y += y_ld) {
+    for (int i = 0; i < fetched; i += height) {
+      __builtin_prefetch(x + ahead * x_ld + i);
+      __builtin_prefetch(y + ahead * y_ld + i, 1);
+    }
     for (int i = 0; i < whole; i += lanes) store(y + i, load(y + i) + load(x + i));
     if (whole < n) store(y + whole, load(y + whole) + (rest ? load(x + whole) : Lanes{}));
   }
@@ -129,27 +147,62 @@ inline void factorize(const double* a, std::ptrdiff_t a_ld, Block& block) {
   }
 }
 
-// A strip of L below a block: L D = A L'^-1, A's 8 columns `ld` apart. The first k columns of L and
-// L D are kept.
-inline void divide_strip(const double* a, std::ptrdiff_t ld, const Block& block, int k, double* l,
-                         double* scaled) {
-#pragma GCC unroll 4
-  for (int v = 0; v < vectors; ++v) {
-    Lanes x[height];
-#pragma GCC unroll 8
-    for (int j = 0; j < height; ++j) x[j] = load(a + j * ld + v * lanes);
-#pragma GCC unroll 8
-    for (int p = 0; p < height; ++p) {
-      if (p < k) store(scaled + p * height + v * lanes, x[p]);
-      x[p] *= block.inverse[p];
-#pragma GCC unroll 8
-      for (int j = p + 1; j < height; ++j) x[j] -= x[p] * block.ld[p * height + j];
-    }
-#pragma GCC unroll 8
+// A tile of L below a block: L D = (C - A W') L'^-1, without leaving the registers. C: 8 columns
+// `ld` apart; A and W as above; L: strips `l_stride` apart. L D's columns follow those of A. The
+// first `columns` columns of L and L D are kept.
+template <int strips>
+inline void divide_tile(const double* c, std::ptrdiff_t ld, double* a, std::ptrdiff_t stride,
+                        const double* w, int k, const Block& block, int columns, double* l,
+                        std::ptrdiff_t l_stride) {
+  constexpr int rows = strips * vectors;
+  // L is new to the caches: here the next tile's part of it is fetched.
+#pragma GCC unroll 16
+  for (int i = 0; i < strips; ++i) {
+#pragma GCC unroll 16
     for (int j = 0; j < height; ++j) {
-      if (j < k) store(l + j * height + v * lanes, x[j]);
+      __builtin_prefetch(l + (i + strips) * l_stride + j * height, 1);
     }
   }
+  Lanes x[height][rows];
+#pragma GCC unroll 4
+  for (int from = 0; from < height; from += tile_columns) {
+    Lanes sum[tile_columns][rows];
+    multiply<strips>(a, stride, w + from, k, sum);
+#pragma GCC unroll 16
+    for (int j = 0; j < tile_columns; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < rows; ++i) {
+        x[from + j][i] = load(c + (from + j) * ld + i * lanes) - sum[j][i];
+      }
+    }
+  }
+  a += k * height;
+#pragma GCC unroll 8
+  for (int p = 0; p < height; ++p) {
+    if (p >= columns) break;
+#pragma GCC unroll 16
+    for (int i = 0; i < rows; ++i) {
+      store(a + i / vectors * stride + p * height + i % vectors * lanes, x[p][i]);
+      x[p][i] *= block.inverse[p];
+      store(l + i / vectors * l_stride + p * height + i % vectors * lanes, x[p][i]);
+    }
+#pragma GCC unroll 8
+    for (int j = p + 1; j < height; ++j) {
+#pragma GCC unroll 16
+      for (int i = 0; i < rows; ++i) x[j][i] -= x[p][i] * block.ld[p * height + j];
+    }
+  }
+}
+
+// The same for 1 to `tile_strips` strips.
+inline void divide(const double* c, std::ptrdiff_t ld, double* a, std::ptrdiff_t stride,
+                   const double* w, int k, const Block& block, int columns, double* l,
+                   std::ptrdiff_t l_stride, int strips) {
+  if constexpr (tile_strips == 3) {
+    if (strips == 3) divide_tile<3>(c, ld, a, stride, w, k, block, columns, l, l_stride);
+    if (strips == 2) divide_tile<2>(c, ld, a, stride, w, k, block, columns, l, l_stride);
+  }
+  if (strips == 1) divide_tile<1>(c, ld, a, stride, w, k, block, columns, l, l_stride);
 }
 
 // y = y - A x of strips `stride` apart, of k <= 8 columns.
