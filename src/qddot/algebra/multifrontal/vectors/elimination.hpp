@@ -19,27 +19,28 @@ double* factor(const OpenFront& f, int i, int k) {
 
 // Strip by strip, whose columns stay in the first cache.
 void assemble(const OpenFront& f, const Combination& matrix, Entries of_k, int from, int end) {
-  const double minus_s = -matrix.s;
+  const std::ptrdiff_t ld = f.height;
+  const double minus_s = -matrix.s, *k = matrix.k;
+  double* const columns = f.columns;
   const Entry* e = of_k.begin;
   for (int first = from; first < end; first += height) {
-    double* columns = f.columns + std::ptrdiff_t{first} * f.height;
-    for (int j = 0; j < height; ++j) {
-      for (int i = first; i < f.height; i += lanes) store(columns + j * f.height + i, Lanes{});
+    for (double* to = columns + first * ld; to < columns + (first + height) * ld; to += ld) {
+      for (std::ptrdiff_t i = first; i < ld; i += lanes) store(to + i, Lanes{});
     }
-    const int next = (first + height) * f.height;
+    const std::ptrdiff_t next = (first + height) * ld;
     for (; e < of_k.end && e->target < next; ++e) {
-      const double* k = matrix.k + e->source;
-      double* to = f.columns + e->target;
-      const std::ptrdiff_t stride = e->across ? f.height : 1;
+      const double* value = k + e->source;
+      double* to = columns + e->target;
+      const std::ptrdiff_t stride = e->across ? ld : 1;
       // Three without branches: one or two are written again.
       const int last = e->length - 1, middle = last < 1 ? last : 1;
-      to[0] = minus_s * k[0];
-      to[middle * stride] = minus_s * k[middle];
-      to[last * stride] = minus_s * k[last];
+      to[0] = minus_s * value[0];
+      to[middle * stride] = minus_s * value[middle];
+      to[last * stride] = minus_s * value[last];
     }
     // The columns that fill up the last strip are those of the identity.
     for (int j = first; j < first + height; ++j) {
-      double& pivot = f.columns[std::ptrdiff_t{j} * (f.height + 1)];
+      double& pivot = columns[j * (ld + 1)];
       pivot = j < f.pivots ? pivot + matrix.a * matrix.diagonal[f.first + j] : 1;
     }
   }
