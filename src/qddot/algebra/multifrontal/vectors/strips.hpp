@@ -49,7 +49,7 @@ inline void subtract_tile(double* c, std::ptrdiff_t ld, const double* a, std::pt
                           const double* w, int k) {
   constexpr int rows = strips * vectors;
   // C may be in a farther cache than A and W: many products are worth fetching it before.
-  if (k >= 48) {
+  if (k >= 36) {
 #pragma GCC unroll 16
     for (int j = 0; j < tile_columns; ++j) {
 #pragma GCC unroll 16
