@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(any_number_of_threads_makes_the_same_factors) {
   BOOST_TEST(given_up >= 4);
 }
 
-// Kernels write the last vector of an update's last column whole, up to a strip's height beyond it.
+// Kernels read vectors at the ends of an update's columns whole, up to a strip's height beyond it.
 // Branches make their updates at the same time: no two may come so close.
 BOOST_AUTO_TEST_CASE(branches_never_write_to_the_same_place) {
   std::size_t neighbours = 0;

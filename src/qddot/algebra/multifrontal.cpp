@@ -24,12 +24,12 @@ constexpr int height = strip_height;
 struct Workspace {
   // `scaled` holds L D in the panel's rows, then in a tile's or, for a team, in all rows below.
   Workspace(const Fronts::Sizes& sizes, int tile_strips, bool for_team)
-      : updates(sizes.updates),
-        columns(sizes.pivot_columns + height),  // kernels write the last vector of a column whole
+      : updates(height + sizes.updates),
+        columns(sizes.pivot_columns),
         scaled(Index{panel} * std::max(panel, for_team ? sizes.height + height * tile_strips
                                                        : height * tile_strips)) {}
 
-  LargeArray updates;
+  LargeArray updates;  // after a strip's height, which kernels read (see Fronts::place_updates)
   LargeArray columns;  // of the present front's pivots, until they are columns of L
   LargeArray scaled;   // L D of a panel, in strips as L
   std::array<Block, panel / height> blocks;  // of the panel, on the diagonal
@@ -131,7 +131,7 @@ class Multifrontal : public Factors {
   }
 
   double* update(const Front& f, Workspace& own) {
-    return (f.kept ? top_ : own).updates.get() + f.update;
+    return (f.kept ? top_ : own).updates.get() + height + f.update;
   }
 
   // A front while it is worked on.

@@ -148,8 +148,8 @@ void Fronts::divide(const std::vector<int>& parents) {
 // Updates are created and consumed as on a stack, but a front's update begins to grow before those
 // of its children are consumed. Two stacks, one for even and one for odd depths of the tree, leave
 // each update in place. Updates that branches keep come first, as all of them exist at once. A
-// strip's height is free after each update. Kernels write the last vector of its last column whole,
-// while another thread may write the next update.
+// strip's height is free before and after each update. Kernels read vectors at the ends of its
+// columns whole, while another thread may write the next update.
 void Fronts::place_updates(const std::vector<int>& parents) {
   const int count = static_cast<int>(all_.size());
   std::vector<int> depth(count);

@@ -46,7 +46,7 @@ void assemble(const OpenFront& f, const Combination& matrix, Entries of_k, int f
   }
 }
 
-// All columns of one run of rows, then the next run: so no sum waits for a neighbour to be stored.
+// All columns of one run of rows, then the next run. Columns on the diagonal go strip by strip.
 void add_update(const ChildUpdate& child, const OpenFront& f, int first, int end) {
   const std::ptrdiff_t x_ld = child.height;
   const std::ptrdiff_t y_ld = first < f.pivot_height ? f.height : f.height - f.pivot_height;
@@ -55,12 +55,16 @@ void add_update(const ChildUpdate& child, const OpenFront& f, int first, int end
       const int last = run->length < end - run->to ? run->length : end - run->to;
       int j = first > run->to ? first - run->to : 0;
       const auto add_columns = [&](int count, int above) {
-        add(child.update + (run->from + j) * x_ld + rows->from + above, x_ld, rows->length - above,
-            count, column(f, run->to + j) + rows->to + above, y_ld);
+        const int from = (rows->to + above) % height, strip = rows->to + above - from;
+        add(child.update + (run->from + j) * x_ld + rows->from + above - from, x_ld, from,
+            rows->to + rows->length - strip, count, column(f, run->to + j) + strip, y_ld);
         j += count;
       };
       if (run < rows) add_columns(last - j, 0);
-      while (j < last) add_columns(height < last - j ? height : last - j, j);
+      while (j < last) {
+        const int rest = height - (run->to + j) % height;
+        add_columns(rest < last - j ? rest : last - j, j);
+      }
     }
   }
 }

@@ -95,20 +95,29 @@ template <int i>
   return first_places + v * lanes < i ? x : Lanes{};
 }
 
-// Y = Y + X, n rows of columns x_ld and y_ld apart. A column's last vector is read and written
-// whole, beyond it unchanged. Long columns come from farther caches: they are fetched before.
-inline void add(const double* x, std::ptrdiff_t x_ld, int n, int columns, double* y,
+// Y = Y + X in rows [from, end), from < 8, of columns x_ld and y_ld apart. Row 0 of Y begins a line
+// of the cache, so that no vector of Y crosses one. The first and last vector are read and written
+// whole, other rows unchanged. Long columns come from farther caches: they are fetched before.
+inline void add(const double* x, std::ptrdiff_t x_ld, int from, int end, int columns, double* y,
                 std::ptrdiff_t y_ld) {
   constexpr int ahead = 8;
-  const int fetched = n < 64 ? 0 : n, whole = n / lanes * lanes;
-  const auto rest = first_places < n - whole;
+  const int fetched = end < 64 ? 0 : end;
+  const int begin = from / lanes * lanes, last = (end - 1) / lanes * lanes;
+  const auto in_first = first_places + begin >= from, in_last = first_places + last < end;
+  const auto in_first_and_last = in_first & in_last;
   for (int j = 0; j < columns; ++j, x += x_ld, y += y_ld) {
+    if (begin == last) {
+      store(y + last, load(y + last) + (in_first_and_last ? load(x + last) : Lanes{}));
+      continue;
+    }
     for (int i = 0; i < fetched; i += height) {
       __builtin_prefetch(x + ahead * x_ld + i);
       __builtin_prefetch(y + ahead * y_ld + i, 1);
     }
-    for (int i = 0; i < whole; i += lanes) store(y + i, load(y + i) + load(x + i));
-    if (whole < n) store(y + whole, load(y + whole) + (rest ? load(x + whole) : Lanes{}));
+    store(y + begin, load(y + begin) + (in_first ? load(x + begin) : Lanes{}));
+#pragma GCC unroll 1
+    for (int i = begin + lanes; i < last; i += lanes) store(y + i, load(y + i) + load(x + i));
+    store(y + last, load(y + last) + (in_last ? load(x + last) : Lanes{}));
   }
 }
 
