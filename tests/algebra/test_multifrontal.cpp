@@ -11,8 +11,8 @@
 BOOST_AUTO_TEST_SUITE(multifrontal)
 
 using namespace qddot;
-using qddot::multifrontal::Branch, qddot::multifrontal::Front, qddot::multifrontal::Fronts,
-    qddot::multifrontal::strip_height;
+using qddot::multifrontal::Branch, qddot::multifrontal::Entry, qddot::multifrontal::Front,
+    qddot::multifrontal::Fronts, qddot::multifrontal::strip_height;
 
 namespace {
 
@@ -152,6 +152,43 @@ BOOST_AUTO_TEST_CASE(any_number_of_threads_makes_the_same_factors) {
   }
   BOOST_TEST(indefinite >= 4);
   BOOST_TEST(given_up >= 4);
+}
+
+// Threads divide a front's columns by strips, and put into them the entries of K from the first
+// that begins in a strip to the last.
+BOOST_AUTO_TEST_CASE(every_entry_of_the_matrix_has_one_place_and_none_leaves_its_strip) {
+  std::vector<Matrix> all = large_cases();
+  for (Matrix& m : patterns(0)) all.push_back(std::move(m));
+  for (const Matrix& m : all) {
+    BOOST_TEST_CONTEXT(m.name << " of " << m.diagonal.size() << " unknowns") {
+      const Fronts fronts(m.k, analyse(m.k));
+      std::vector<std::pair<int, int>> columns_and_rows;  // in the order of elimination
+      for (int j = 0; j < m.k.cols(); ++j) {
+        for (SymmetricMatrix::InnerIterator entry(m.k, j); entry; ++entry)
+          columns_and_rows.push_back(std::minmax({fronts.place()[entry.row()], fronts.place()[j]}));
+      }
+      std::vector<int> places(columns_and_rows.size());
+      Index misplaced = 0;
+      for (const Front& f : fronts) {
+        const auto strip = [&](int target) { return target / f.height() / strip_height; };
+        const auto strip_of = [&](const Entry& e) { return strip(e.target); };
+        BOOST_TEST(std::ranges::is_sorted(fronts.entries(f), {}, strip_of));
+        for (const Entry& e : fronts.entries(f)) {
+          for (int i = 0; i < e.length; ++i) {
+            const int target = e.target + i * (e.across ? f.height() : 1);
+            const int column = target / f.height(), row = target % f.height();
+            const std::pair found(f.first + column, row < f.pivots
+                                                        ? f.first + row
+                                                        : fronts.rows(f)[row - f.pivot_height()]);
+            misplaced += found != columns_and_rows[e.source + i] || strip(target) != strip_of(e);
+            ++places[e.source + i];
+          }
+        }
+      }
+      BOOST_TEST(misplaced == 0);
+      BOOST_TEST(std::ranges::count(places, 1) == std::ssize(places));
+    }
+  }
 }
 
 // Kernels read vectors at the ends of an update's columns whole, up to a strip's height beyond it.
