@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 
 namespace qddot::multifrontal {
@@ -125,7 +126,8 @@ void Fronts::divide(const std::vector<int>& parents) {
     work[parents[s]] += work[s];
     start[parents[s]] = std::min(start[parents[s]], start[s]);
   }
-  const double share = whole < least_work ? whole : whole / shares;
+  const double share =
+      whole < least_work ? std::numeric_limits<double>::infinity() : whole / shares;
   double last = share;  // the work of the last branch
   for (int s = 0; s < count; ++s) {
     if (work[s] > share) {
