@@ -5,7 +5,6 @@
 #include <random>
 
 #include "qddot/integrators/registry.hpp"
-#include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/random_times.hpp"
 #include "qddot/measure/motion/rest.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -50,7 +49,7 @@ Trial Stage::run_from(const Model& model, const State& start, const Method& meth
   options.most_forces = limits.forces;
   const auto integrator = make_integrator(method, model.system(), options);
   State state = start;
-  const Deadline deadline(limits.seconds);
+  const Deadline deadline(limits.seconds, alarm_);
   const double energy = model.energy(start) + energy_lost_at_start_;
   const auto see_energy = [&](const State& seen) {
     const double gain = model.energy(seen) - energy;

@@ -8,6 +8,7 @@
 
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/advice/rules.hpp"
+#include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/error.hpp"
 
 namespace qddot::inline measure {
@@ -130,6 +131,7 @@ class Stage {
   Scales scales_;
   bool rests_ = false;
   double energy_lost_at_start_ = 0;  // [J], at most zero
+  mutable Alarm alarm_;              // for the limits of all runs
 };
 
 }  // namespace qddot::inline measure
