@@ -8,8 +8,8 @@
 namespace qddot::kernels {
 
 // The kind of roots in use. The environment variable QDDOT_ROOTS may name it. Else it is the
-// processor's own, unless another is clearly faster, as timed for a millisecond at the first call.
-// Throws NoSuchKernels if this processor has none of that name.
+// processor's own, unless another is clearly faster, as timed for a tenth of a millisecond at the
+// first call. Throws NoSuchKernels if this processor has none of that name.
 Roots roots();
 
 // Lists the names of all kinds, in the order of Roots.
