@@ -13,6 +13,7 @@
 #include <suitesparse/cholmod.h>
 #include <sundials/sundials_version.h>
 
+#include "experiments/kit/blas.hpp"
 #include "qddot/model/kernels/level.hpp"
 #include "qddot/model/kernels/roots.hpp"
 #include "qddot/scene/explain.hpp"
@@ -77,6 +78,7 @@ nlohmann::json provenance(const std::vector<std::string>& command_line) {
                            {"compiler", build_info::compiler},
                            {"flags", build_info::flags},
                            {"roots", roots()},
+                           {"blas", blas()},
                            {"date", date_now()}};
   origin.update(machine());
   return origin;

@@ -22,7 +22,8 @@ extern const char* const flags;
 namespace qddot::inline kit {
 
 // The record of how a result was made: command line, date (UTC), version of the code, compiler and
-// flags. It also has the kernels' level and roots, processor and libraries.
+// flags. It also has the kernels' level and roots, the BLAS with its code's processor, processor
+// and libraries.
 nlohmann::json provenance(const std::vector<std::string>& command_line);
 
 // The same with the scene and its content hash.

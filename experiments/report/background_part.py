@@ -76,6 +76,7 @@ def provenance_part(sidecar):
         ("compiler", sidecar.get("compiler")),
         ("compiler flags", sidecar.get("flags")),
         ("libraries", ", ".join(map(" ".join, libraries.items()))),
+        ("BLAS", sidecar.get("blas")),
         ("qddot", sidecar.get("version")),
         ("sources", sidecar.get("source_hash")),
         ("measured", sidecar.get("date")),

@@ -12,12 +12,16 @@
 //     forward and once back, over the time of a solve. The row `machine` has one thread's limits:
 //     a dense product's operations a second, and the rate of reading as many bytes as the
 //     multifrontal solver's factors have. solvers.csv holds a row for each solver.
+//  4. CHOLMOD and the dense product run as fast as OpenBLAS's code for a processor lets them. The
+//     sidecar names it (`blas`), and the output a faster one where OpenBLAS does not know this
+//     processor.
 #include <cmath>
 #include <omp.h>
 
 #include <fmt/format.h>
 
 #include "experiments/kit/allowed_options.hpp"
+#include "experiments/kit/blas.hpp"
 #include "experiments/kit/program.hpp"
 #include "experiments/solvers/direct_solvers.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -66,6 +70,17 @@ SolverRow machine(const Subject& subject, double bytes) {
   return row;
 }
 
+// Says so if OpenBLAS takes the processor for one with narrower vectors.
+void advise_core() {
+  const std::string core = blas_core();
+  const std::string_view wider = wider_core(core, vector_bits());
+  if (wider.empty()) return;
+  fmt::print(
+      "OpenBLAS takes this processor for a {0}, which slows down CHOLMOD and the limit of one "
+      "thread: run this with OPENBLAS_CORETYPE={1} in the environment\n",
+      core, wider);
+}
+
 }  // namespace
 }  // namespace qddot::solvers
 
@@ -104,6 +119,7 @@ int main(int argc, char** argv) {
     std::vector<Contender> contenders;
     nlohmann::json about = subject.about();
     about["threads"] = threads;
+    about["blas"] = blas();
     return p.study(
         about,
         [&](Study& study) {
@@ -131,6 +147,7 @@ int main(int argc, char** argv) {
               fmt::print("{:<13} it finds the matrix singular\n", one.name());
           }
           if (!contenders.empty()) table.add(machine(subject, contenders.front().bytes()));
+          advise_core();
           nlohmann::json origin = p.origin(subject);
           origin["step_size"] = *step_size;
           origin["threads"] = threads;
