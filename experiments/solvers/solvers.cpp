@@ -12,9 +12,8 @@
 //     forward and once back, over the time of a solve. The row `machine` has one thread's limits:
 //     a dense product's operations a second, and the rate of reading as many bytes as the
 //     multifrontal solver's factors have. solvers.csv holds a row for each solver.
-//  4. CHOLMOD and the dense product run as fast as OpenBLAS's code for a processor lets them. The
-//     sidecar names it (`blas`), and the output a faster one where OpenBLAS does not know this
-//     processor.
+//  4. CHOLMOD and the dense product run OpenBLAS's code for one processor, which the sidecar names
+//     (`blas`). The output names a faster one where this processor has wider vectors.
 #include <cmath>
 #include <omp.h>
 
@@ -70,14 +69,14 @@ SolverRow machine(const Subject& subject, double bytes) {
   return row;
 }
 
-// Says so if OpenBLAS takes the processor for one with narrower vectors.
+// Says so if OpenBLAS runs its code for processors with narrower vectors.
 void advise_core() {
   const std::string core = blas_core();
   const std::string_view wider = wider_core(core, vector_bits());
   if (wider.empty()) return;
   fmt::print(
-      "OpenBLAS takes this processor for a {0}, which slows down CHOLMOD and the limit of one "
-      "thread: run this with OPENBLAS_CORETYPE={1} in the environment\n",
+      "OpenBLAS runs its code for a {0}, whose vectors are narrower than this processor's: "
+      "CHOLMOD and the limit of one thread are faster with OPENBLAS_CORETYPE={1}\n",
       core, wider);
 }
 
