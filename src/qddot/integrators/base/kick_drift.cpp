@@ -16,40 +16,93 @@ KickDrift::KickDrift(SystemRun& run, const Splitting& splitting)
       splitting_(splitting),
       kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
       q_(options().compensated, system().size()),
-      v_(options().compensated, system().size()),
-      f_(system().size()) {}
+      v_(options().compensated, system().size()) {}
 
-void KickDrift::begin(const State& state, State& x) {
-  x = state;
+void KickDrift::begin(const State& state, X& x) {
+  static_cast<State&>(x) = state;
+  x.f.resize(state.q.size());
+  x.late = 0;
   q_.restart();
   v_.restart();
-  if (kicks_first_) force({state.t, state.q}, f_);
+  if (kicks_first_) force({state.t, state.q}, x.f);
 }
 
-void KickDrift::kick(double size, State& state) {
-  v_.add_quotient(state.v, size, f_, system().mass(), state.v);
+Outcome KickDrift::step(const X& now, double h, X& next) {
+  if (options().compensated) {
+    step_compensated(now, h, next);
+  } else if (kicks_first_) {
+    step_from_kick(now, h, next);
+  } else {
+    step_from_drift(now, h, next);
+  }
+  return Outcome::reached_end;
 }
 
-void KickDrift::drift(double size, State& state) { q_.add_scaled(state.q, size, state.v, state.q); }
+void KickDrift::step_from_kick(const X& now, double h, X& next) {
+  const auto& [order, kicks, drifts] = splitting_;
+  const X* from = &now;
+  double t = now.t, late = now.late;
+  for (std::size_t i = 0; i < drifts.size(); ++i) {
+    kick_and_drift({from->q, from->v, from->f, system().mass()}, late, kicks[i] * h, drifts[i] * h,
+                   next.q, next.v);
+    t += drifts[i] * h;
+    force({t, next.q}, next.f);
+    from = &next;
+    late = 0;
+  }
+  next.late = kicks.back() * h;
+}
 
-Outcome KickDrift::step(const State& now, double h, State& next) {
+void KickDrift::step_from_drift(const X& now, double h, X& next) {
+  const auto& [order, kicks, drifts] = splitting_;
+  const Vec* v = &now.v;
+  double t = now.t;
+  add_scaled(now.q, drifts[0] * h, now.v, next.q);
+  for (std::size_t i = 0; i < kicks.size(); ++i) {
+    t += drifts[i] * h;
+    force({t, next.q}, next.f);
+    kick_and_drift({next.q, *v, next.f, system().mass()}, 0, kicks[i] * h, drifts[i + 1] * h,
+                   next.q, next.v);
+    v = &next.v;
+  }
+}
+
+void KickDrift::step_compensated(const X& now, double h, X& next) {
   const auto& [order, kicks, drifts] = splitting_;
   next.q = now.q;
   next.v = now.v;
+  if (kicks_first_) next.f = now.f;
+  const auto kick = [&](double size) {
+    v_.add_quotient(next.v, size * h, next.f, system().mass(), next.v);
+  };
+  const auto drift = [&](double size) { q_.add_scaled(next.q, size * h, next.v, next.q); };
   double t = now.t;
   for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
-    if (kicks_first_) kick(kicks[i] * h, next);
-    drift(drifts[i] * h, next);
+    if (kicks_first_) kick(kicks[i]);
+    drift(drifts[i]);
     t += drifts[i] * h;
-    force({t, next.q}, f_);
-    if (!kicks_first_) kick(kicks[i] * h, next);
+    force({t, next.q}, next.f);
+    if (!kicks_first_) kick(kicks[i]);
   }
   if (kicks_first_) {
-    kick(kicks.back() * h, next);
+    kick(kicks.back());
   } else {
-    drift(drifts.back() * h, next);
+    drift(drifts.back());
   }
-  return Outcome::reached_end;
+}
+
+void KickDrift::show(const X& x, bool, State& state) const {
+  state.q = x.q;
+  if (x.late == 0) {
+    state.v = x.v;
+  } else {
+    add_quotient(x.v, x.late, x.f, system().mass(), state.v);
+  }
+}
+
+double KickDrift::squared_speed(const X& next) const {
+  if (next.late == 0) return squared_norm(next.v);
+  return squared_norm_of_kicked(next.v, next.late, next.f, system().mass());
 }
 
 std::unique_ptr<Stepper> create_splitting(SystemRun& run) {

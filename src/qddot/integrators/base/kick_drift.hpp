@@ -21,21 +21,30 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 
 // The steps of a splitting. If a kick is first, the last force of a step is the first of the next:
 // one evaluation for each drift, and one at the start. Otherwise each kick takes one evaluation.
+// Each kick is done in one pass over the vectors with the drift after it. So one that ends a step
+// waits for the next step, unless sums are compensated.
 class KickDrift final : public Formula {
  public:
+  struct X : State {
+    Vec f;            // at q, if kicks are first
+    double late = 0;  // the kick that v lacks [s]
+  };
+
   KickDrift(SystemRun& run, const Splitting& splitting);
 
-  void begin(const State& state, State& x);
-  Outcome step(const State& now, double h, State& next);
+  void begin(const State& state, X& x);
+  Outcome step(const X& now, double h, X& next);
+  void show(const X& x, bool, State& state) const;
+  double squared_speed(const X& next) const;
 
  private:
-  void kick(double size, State& state);
-  void drift(double size, State& state);
+  void step_from_kick(const X& now, double h, X& next);
+  void step_from_drift(const X& now, double h, X& next);
+  void step_compensated(const X& now, double h, X& next);
 
   const Splitting& splitting_;
   bool kicks_first_;
   CompensatedSum q_, v_;
-  Vec f_;  // at the last kick, or at the next one
 };
 
 // Makes the stepper of Method::splitting; for Method::make.
