@@ -22,34 +22,31 @@ class Rk4 final : public Formula {
   using Formula::Formula;
 
   Outcome step(const State& now, double h, State& next) {
-    next.q = now.q;
-    next.v = now.v;
-    add_stage(now, h / 6, next);
-    at_.t = now.t + h / 2;
-    add_scaled(now.q, h / 2, now.v, at_.q);
-    add_scaled(now.v, h / 2, a_, at_.v);
-    add_stage(at_, h / 3, next);
-    add_scaled(now.q, h / 2, at_.v, at_.q);
-    add_scaled(now.v, h / 2, a_, at_.v);
-    add_stage(at_, h / 3, next);
-    at_.t = next.t;
-    add_scaled(now.q, h, at_.v, at_.q);
-    add_scaled(now.v, h, a_, at_.v);
-    add_stage(at_, h / 6, next);
+    const Vec& mass = system().mass();
+    const double middle = now.t + h / 2;
+    force(now, f_);
+    add_scaled(now.q, h / 2, now.v, q_);
+    add_scaled(now.q, h / 6, now.v, next.q);
+    add_quotient(now.v, h / 6, f_, mass, next.v);
+    // Each pass gives the stage's velocity, and from it the position of the stage after it.
+    kick_and_drift({now.q, now.v, f_, mass}, 0, h / 2, h / 2, q_after_, v_);
+    add_stage({middle, q_, v_}, h / 3, next);
+    kick_and_drift({now.q, now.v, f_, mass}, 0, h / 2, h, q_, v_);
+    add_stage({middle, q_after_, v_}, h / 3, next);
+    add_quotient(now.v, h, f_, mass, v_);
+    add_stage({next.t, q_, v_}, h / 6, next);
     return Outcome::reached_end;
   }
 
  private:
-  // Computes a_i at a stage and adds `weight` times the stage's rate to `next`.
-  void add_stage(const State& stage, double weight, State& next) {
-    force(stage, a_);
-    divide(a_, system().mass(), a_);
+  // Computes f at a stage and adds `weight` times the stage's rate to `next`.
+  void add_stage(const At& stage, double weight, State& next) {
+    force(stage, f_);
     add_scaled(next.q, weight, stage.v, next.q);
-    add_scaled(next.v, weight, a_, next.v);
+    add_quotient(next.v, weight, f_, system().mass(), next.v);
   }
 
-  State at_{0, Vec(system().size()), Vec(system().size())};
-  Vec a_{system().size()};
+  Vec q_{system().size()}, q_after_{system().size()}, v_{system().size()}, f_{system().size()};
 };
 
 }  // namespace
