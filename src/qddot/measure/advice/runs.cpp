@@ -54,7 +54,6 @@ double Runs::seconds_left() const {
 const Trial& Runs::make(const Method& method, double value, const Limits& limits) {
   all_.push_back(stage_.run(
       method, value, {std::min(limits.seconds, seconds_left()), limits.forces, limits.only_end}));
-  stage_.time_again(all_.back());
   return all_.back();
 }
 

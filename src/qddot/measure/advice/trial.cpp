@@ -40,14 +40,19 @@ Stage::Stage(const Model& model, double until, AccuracyOf of, const Scene* drawn
           until, static_cast<std::int64_t>(of == AccuracyOf::positions ? rules.looks
                                                                        : rules.looks_at_a_path))) {}
 
-Trial Stage::run_from(const Model& model, const State& start, const Method& method, double value,
-                      const Limits& limits, const See& see_step) const {
+std::unique_ptr<Integrator> Stage::integrator(const Model& model, const Method& method,
+                                              double value, const Limits& limits) const {
+  Options options = options_for(method, value, model);
+  options.most_forces = limits.forces;
+  return make_integrator(method, model.system(), options);
+}
+
+Trial Stage::run_by(Integrator& integrator, const Model& model, const State& start,
+                    const Method& method, double value, const Limits& limits,
+                    const See& see_step) const {
   Trial trial{.method = &method,
               .value = value,
               .only_end = limits.only_end && of_ == AccuracyOf::positions};
-  Options options = options_for(method, value, model);
-  options.most_forces = limits.forces;
-  const auto integrator = make_integrator(method, model.system(), options);
   State state = start;
   const Deadline deadline(limits.seconds, alarm_);
   const double energy = model.energy(start) + energy_lost_at_start_;
@@ -60,7 +65,7 @@ Trial Stage::run_from(const Model& model, const State& start, const Method& meth
                 [&](const State& seen) { trial.path.push_back(seen); }, see_step};
   if (!each.step && of_ == AccuracyOf::energy) each.step = see_energy;
   trial.seconds = seconds_of(
-      [&] { trial.summary = integrator->advance(state, until_, each, deadline.token()); });
+      [&] { trial.summary = integrator.advance(state, until_, each, deadline.token()); });
   for (const State& seen : trial.path) see_energy(seen);
   if (!trial.reached_end()) stop_if_interrupted();
   return trial;
@@ -78,8 +83,8 @@ void Stage::begin_in_balance(const Method& method) {
 
 void Stage::look_within_steps(const Method& method, double value, const Limits& limits) {
   std::vector<double> steps{0};
-  run_from(model_, model_.initial(), method, value, limits,
-           [&](const State& seen) { steps.push_back(seen.t); });
+  run_by(*integrator(model_, method, value, limits), model_, model_.initial(), method, value,
+         limits, [&](const State& seen) { steps.push_back(seen.t); });
   std::mt19937 random(1);
   std::uniform_real_distribution<double> part(0, 1);
   const auto looks = static_cast<std::size_t>(rules_.looks_at_a_path);
@@ -92,7 +97,10 @@ void Stage::look_within_steps(const Method& method, double value, const Limits& 
 }
 
 Trial Stage::run(const Method& method, double value, const Limits& limits) const {
-  return run_from(model_, model_.initial(), method, value, limits);
+  const auto own = integrator(model_, method, value, limits);
+  Trial trial = run_by(*own, model_, model_.initial(), method, value, limits);
+  time_again(trial, *own);
+  return trial;
 }
 
 Trial Stage::run_pushed(const Method& method, double value, const Limits& limits,
@@ -109,18 +117,27 @@ Trial Stage::run_pushed(const Method& method, double value, const Limits& limits
     }
     at += n;
   }
-  Trial trial = run_from(model_, start, method, value, limits);
+  Trial trial =
+      run_by(*integrator(model_, method, value, limits), model_, start, method, value, limits);
   trial.is_pushed = true;
   return trial;
 }
 
 void Stage::time_again(Trial& trial) const {
-  const double limit = rules_.small * rules_.unnoticed;
-  if (!trial.reached_end() || trial.seconds >= limit) return;
-  const auto integrator = make_integrator(*trial.method, model_.system(),
-                                          options_for(*trial.method, trial.value, model_));
+  if (is_short(trial)) time_again(trial, *integrator(model_, *trial.method, trial.value, {}));
+}
+
+bool Stage::is_short(const Trial& trial) const {
+  return trial.reached_end() && trial.seconds < rules_.small * rules_.unnoticed;
+}
+
+void Stage::time_again(Trial& trial, Integrator& integrator) const {
+  if (!is_short(trial)) return;
   State state = model_.initial();
-  trial.seconds = std::min(trial.seconds, seconds_of([&] { integrator->advance(state, until_); }));
+  Outcome outcome = Outcome::reached_end;
+  const double seconds = seconds_of([&] { outcome = integrator.advance(state, until_).outcome; });
+  // Without looks it may take a few forces more, and have no more left.
+  if (outcome == Outcome::reached_end) trial.seconds = std::min(trial.seconds, seconds);
 }
 
 void Stage::measure_by(const Trial& trial) {
@@ -197,7 +214,8 @@ std::vector<double> Stage::distances_as_drawn(const Trial& trial, const Method& 
   for (Spring& spring : scene.springs) shift(spring.law.rest_length, spring.law.rest_length);
   const Model drawn(scene, Reductions().without(Reduction::dimension).without(Reduction::mirror));
   if (!applies_to(method, drawn.system())) return all;
-  const Trial pushed = run_from(drawn, drawn.initial(), method, value, limits);
+  const Trial pushed = run_by(*integrator(drawn, method, value, limits), drawn, drawn.initial(),
+                              method, value, limits);
   if (!pushed.reached_end()) return all;
   std::vector<Node> nodes, expected;
   for (std::size_t i = 0; i < times_.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -68,7 +69,8 @@ class Stage {
   // at once, and the exact motion keeps the energy that is left. The method accepts such nodes.
   void begin_in_balance(const Method& method);
 
-  // Runs the method from the start to the end.
+  // Runs the method from the start to the end. If that takes a short time, it is done twice, as in
+  // time_again().
   Trial run(const Method& method, double value, const Limits& limits) const;
   // The same from a start that is pushed.
   Trial run_pushed(const Method& method, double value, const Limits& limits,
@@ -117,10 +119,15 @@ class Stage {
  private:
   // The largest kinetic energy, or 1 J if nothing moves.
   double energy_scale() const;
+  // Makes the integrator of a run.
+  std::unique_ptr<Integrator> integrator(const Model& model, const Method& method, double value,
+                                         const Limits& limits) const;
   using See = std::function<void(const State&)>;
   // `see_step`, if set, takes the place of a look at the energy after each step.
-  Trial run_from(const Model& model, const State& start, const Method& method, double value,
-                 const Limits& limits, const See& see_step = {}) const;
+  Trial run_by(Integrator& integrator, const Model& model, const State& start, const Method& method,
+               double value, const Limits& limits, const See& see_step = {}) const;
+  bool is_short(const Trial& trial) const;
+  void time_again(Trial& trial, Integrator& integrator) const;
 
   const Model& model_;
   double until_;
