@@ -1,5 +1,6 @@
 // Deadlines, and interruptions of a thread of its own.
 #include <latch>
+#include <limits>
 #include <thread>
 
 #include <boost/test/unit_test.hpp>
@@ -29,6 +30,37 @@ BOOST_AUTO_TEST_CASE(destroyed_early_it_neither_waits_nor_asks) {
     BOOST_TEST(!deadline.passed());
   }
   BOOST_TEST(!token.stop_requested());
+}
+
+BOOST_AUTO_TEST_CASE(an_infinite_time_does_not_pass) {
+  const Deadline deadline(std::numeric_limits<double>::infinity());
+  BOOST_TEST(!deadline.passed());
+}
+
+BOOST_AUTO_TEST_CASE(one_alarm_serves_deadlines_by_turns_earlier_ones_too) {
+  Alarm alarm;
+  for (const double seconds : {0.01, 1e300, 0.005, 0., 1e300, 0.01}) {
+    const Deadline deadline(seconds, alarm);
+    if (seconds > 1) continue;
+    std::latch passed(1);
+    const std::stop_callback wake(deadline.token(), [&] { passed.count_down(); });
+    passed.wait();
+    BOOST_TEST(deadline.passed());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_alarm_asks_nobody_whose_deadline_is_no_more) {
+  Alarm alarm;
+  std::stop_token early;
+  {
+    const Deadline deadline(0.005, alarm);
+    early = deadline.token();
+  }
+  const Deadline deadline(0.02);
+  std::latch passed(1);
+  const std::stop_callback wake(deadline.token(), [&] { passed.count_down(); });
+  passed.wait();
+  BOOST_TEST(!early.stop_requested());
 }
 
 BOOST_AUTO_TEST_CASE(an_interruption_ends_the_work_of_its_own_thread_alone) {
