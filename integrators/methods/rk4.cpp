@@ -22,7 +22,7 @@ class Rk4 final : public Formula {
   using Formula::Formula;
 
   Outcome step(const State& now, double h, State& next) {
-    const Vec& mass = system().mass();
+    const Mass& mass = system().mass();
     const double middle = now.t + h / 2;
     force(now, f_);
     add_scaled(now.q, h / 2, now.v, q_);
