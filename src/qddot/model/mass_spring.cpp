@@ -1,5 +1,6 @@
 #include "qddot/model/mass_spring.hpp"
 
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 #include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
 #include "qddot/model/spring_lists.hpp"
+#include "qddot/model/stiffness_blocks.hpp"
 
 namespace qddot {
 namespace {
@@ -77,21 +79,23 @@ class MassSpring final : public CapableSystem {
   using Block = Eigen::Matrix<double, D, D>;
 
  public:
-  MassSpring(const Network& network, Forces forces)
-      : MassSpring(network, forces, {network.node_mass.size(), network.zero_coordinates}) {}
+  MassSpring(Network network, Forces forces)
+      : MassSpring(std::move(network), forces,
+                   Layout<D>(network.node_mass.size(), network.zero_coordinates)) {}
 
   double potential(const At& at) const override {
     const VecView& q = at.q;
     double v = constant_energy_ - weight_.dot(q);
     if (by_node_) {
       v += by_node_->half_sum_energies(q);
-      springs_.for_each_anchor([&](const auto& spring) {
-        v += spring_energy(spring.law, springs_.between(q, spring)) / 2;
+      for_each_anchor([&](const Network::Anchor& anchor) {
+        const Point d = anchor.point.template head<D>() - layout_.at(q, anchor.i);
+        v += spring_energy(anchor.law, d) / 2;
       });
       return v;
     }
-    springs_.for_each(
-        [&](const auto& spring) { v += spring_energy(spring.law, springs_.between(q, spring)); });
+    springs_->for_each(
+        [&](const auto& spring) { v += spring_energy(spring.law, springs_->between(q, spring)); });
     return v;
   }
 
@@ -99,8 +103,8 @@ class MassSpring final : public CapableSystem {
     const VecView& q = at.q;
     if (by_node_) return by_node_->sum_forces(q, weight_, f);
     f = weight_;
-    springs_.add_forces(
-        [&](const auto& spring) { return spring_force(spring.law, springs_.between(q, spring)); },
+    springs_->add_forces(
+        [&](const auto& spring) { return spring_force(spring.law, springs_->between(q, spring)); },
         f);
   }
 
@@ -108,10 +112,10 @@ class MassSpring final : public CapableSystem {
     const VecView &a = start.q, &b = end.q;
     if (by_node_) return by_node_->sum_mean_forces(a, b, weight_, f);
     f = weight_;
-    springs_.add_forces(
+    springs_->add_forces(
         [&](const auto& spring) {
-          return spring_discrete_gradient(spring.law, springs_.between(a, spring),
-                                          springs_.between(b, spring));
+          return spring_discrete_gradient(spring.law, springs_->between(a, spring),
+                                          springs_->between(b, spring));
         },
         f);
   }
@@ -124,9 +128,10 @@ class MassSpring final : public CapableSystem {
     const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
     };
-    if (!by_node_) return springs_.assemble(q, k, block);
-    columns_->stiffness(*by_node_, q, compression_weight, k);
-    add_left_out(q, k, block);
+    const ForStiffness& own = for_stiffness();
+    if (!by_node_) return own.blocks.assemble(q, k, block);
+    own.columns->stiffness(*by_node_, q, compression_weight, k);
+    add_left_out(own, q, k, block);
   }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override {
@@ -134,12 +139,16 @@ class MassSpring final : public CapableSystem {
     const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
     };
-    if (!by_node_) return springs_.assemble(q, k, block);
-    columns_->material_stiffness(*by_node_, q, k);
-    add_left_out(q, k, block);
+    const ForStiffness& own = for_stiffness();
+    if (!by_node_) return own.blocks.assemble(q, k, block);
+    own.columns->material_stiffness(*by_node_, q, k);
+    add_left_out(own, q, k, block);
   }
 
-  const SymmetricMatrix& stiffness_pattern() const override { return springs_.pattern(); }
+  const SymmetricMatrix& stiffness_pattern() const override {
+    return for_stiffness().blocks.pattern();
+  }
+  bool has_stiffness() const override { return true; }
   bool stiffness_is_constant() const override { return linear_; }
 
   const SplitStiffness* split_stiffness() const override { return this; }
@@ -156,9 +165,10 @@ class MassSpring final : public CapableSystem {
     const VecView q = at;
     const signed char* direction = directions_.data();
     bool all = true;
-    springs_.for_each([&](const auto& spring) {
+    const SpringLists<D>& springs = lists();
+    springs.for_each([&](const auto& spring) {
       const int own = *direction++;
-      all = all & (own == 0 || own * springs_.between(q, spring)[0] > 0);
+      all = all & (own == 0 || own * springs.between(q, spring)[0] > 0);
     });
     return all;
   }
@@ -166,9 +176,10 @@ class MassSpring final : public CapableSystem {
   bool bounds_stiffness() const override { return !has_quartic_; }
   // A network with rest lengths of zero has the same stiffness at every q.
   void assemble_laplacian(SymmetricMatrix& l) const override {
-    springs_.assemble(Vec(Vec::Zero(size())), l, [](const SpringLaw& law, const Point&) -> Block {
-      return -law.stiffness * Block::Identity();
-    });
+    for_stiffness().blocks.assemble(Vec(Vec::Zero(size())), l,
+                                    [](const SpringLaw& law, const Point&) -> Block {
+                                      return -law.stiffness * Block::Identity();
+                                    });
   }
 
   // A length of zero is a kink only on a line.
@@ -176,8 +187,9 @@ class MassSpring final : public CapableSystem {
   void kink_lengths(const ConstVec& at, MutableVec lengths) const override {
     const VecView q = at;
     Index i = 0;
-    springs_.for_each([&](const auto& spring) {
-      if (turns_over(spring.law)) lengths[i++] = springs_.between(q, spring)[0];
+    const SpringLists<D>& springs = lists();
+    springs.for_each([&](const auto& spring) {
+      if (turns_over(spring.law)) lengths[i++] = springs.between(q, spring)[0];
     });
   }
 
@@ -190,38 +202,89 @@ class MassSpring final : public CapableSystem {
   }
 
  private:
-  MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
+  // All that K is made of.
+  struct ForStiffness {
+    StiffnessBlocks<D> blocks;
+    std::optional<StiffnessKernel<D>> columns;  // beside SpringsByNode
+  };
+
+  MassSpring(Network&& network, Forces forces, Layout<D> layout)
       : CapableSystem(masses(network, layout)),
-        layout_(layout),
-        springs_(network, layout_),
-        weight_(weights(network, layout)),
+        layout_(std::move(layout)),
+        weight_(weights(network, layout_)),
         constant_energy_(network.constant_energy) {
     note_tension(network);
     directions_ = directions(network, layout_);
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       by_node_.emplace(network, layout_);
-      columns_.emplace(network, layout_, *by_node_, springs_.pattern());
+    } else {
+      springs_.emplace(network, layout_);
     }
+    note_laws(network);
+    if (network.offers_split) offer_split(network, forces);
+    network_ = {.dimension = D,
+                .links = std::move(network.links),
+                .anchors = std::move(network.anchors),
+                .image_links = std::move(network.image_links)};
+  }
+
+  void note_laws(const Network& network) {
     linear_ = network.uses_constant_stiffness;
-    springs_.for_each([&](const auto& spring) {
-      linear_ &= spring.law.is_linear() || keeps_directions();
-      if (spring.law.quartic > 0) has_quartic_ = true;
-      kinks_ += turns_over(spring.law);
-    });
-    if (network.offers_split) {
-      const Network stiff = only(network, true);
-      const std::vector<int> nodes = pulled_nodes(stiff);
-      split_ = {std::make_shared<MassSpring>(stiff, forces),
-                std::make_shared<MassSpring>(only(network, false), forces),
-                std::make_shared<MassSpring>(among(nodes, stiff), forces),
-                {}};
-      for (const int i : nodes) {
-        for (int a = 0; a < layout.count(i); ++a) {
-          split_->stiff_unknowns.push_back(layout.first(i) + a);
-        }
+    const auto note = [&](const auto& springs) {
+      for (const auto& spring : springs) {
+        linear_ = linear_ && (spring.law.is_linear() || keeps_directions());
+        if (spring.law.quartic > 0) has_quartic_ = true;
+        kinks_ += turns_over(spring.law);
+      }
+    };
+    note(network.links);
+    note(network.image_links);
+    note(network.anchors);
+  }
+
+  void offer_split(const Network& network, Forces forces) {
+    const Network stiff = only(network, true);
+    const std::vector<int> nodes = pulled_nodes(stiff);
+    split_ = {std::make_shared<MassSpring>(stiff, forces),
+              std::make_shared<MassSpring>(only(network, false), forces),
+              std::make_shared<MassSpring>(among(nodes, stiff), forces),
+              {}};
+    for (const int i : nodes) {
+      for (int a = 0; a < layout_.count(i); ++a) {
+        split_->stiff_unknowns.push_back(layout_.first(i) + a);
       }
     }
+  }
+
+  // Calls see(anchor) for each spring to a fixed point, in the lists' order.
+  template <class See>
+  void for_each_anchor(const See& see) const {
+    for (const bool full : {true, false}) {
+      for (const Network::Anchor& anchor : network_.anchors) {
+        if (layout_.is_full(anchor.i) == full) see(anchor);
+      }
+    }
+  }
+
+  // The lists, and all that K is made of, are made when somebody first asks for them: explicit runs
+  // of many nodes never do. Any thread may ask.
+  const SpringLists<D>& lists() const {
+    std::call_once(lists_made_, [&] {
+      if (!springs_) springs_.emplace(network_, layout_);
+    });
+    return *springs_;
+  }
+  const ForStiffness& for_stiffness() const {
+    std::call_once(for_stiffness_made_, [&] {
+      ForStiffness& own =
+          for_stiffness_.emplace(ForStiffness{{network_, layout_, lists()}, std::nullopt});
+      if (by_node_) own.columns.emplace(network_, layout_, *by_node_, own.blocks.pattern());
+      // The lists hold the same springs.
+      network_.links = {};
+      network_.image_links = {};
+    });
+    return *for_stiffness_;
   }
 
   bool keeps_directions() const { return !directions_.empty(); }
@@ -253,13 +316,13 @@ class MassSpring final : public CapableSystem {
 
   // Adds the springs that the kernel of K leaves out.
   template <class BlockOf>
-  void add_left_out(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
-    for (const int e : columns_->links_left_out()) springs_.add_link_block(q, k, block, e);
-    springs_.add_image_blocks(q, k, block);
+  static void add_left_out(const ForStiffness& own, const VecView& q, SymmetricMatrix& k,
+                           const BlockOf& block) {
+    for (const int e : own.columns->links_left_out()) own.blocks.add_link_block(q, k, block, e);
+    own.blocks.add_image_blocks(q, k, block);
   }
 
   Layout<D> layout_;
-  SpringLists<D> springs_;
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
@@ -268,16 +331,20 @@ class MassSpring final : public CapableSystem {
   Index kinks_ = 0;
   bool has_quartic_ = false;
   std::optional<SpringsByNode<D>> by_node_;
-  std::optional<StiffnessKernel<D>> columns_;
   std::optional<Split> split_;
+  // The springs that lists and K are made of, its links only until then.
+  mutable Network network_;
+  mutable std::once_flag lists_made_, for_stiffness_made_;
+  mutable std::optional<SpringLists<D>> springs_;  // from the start without by_node_
+  mutable std::optional<ForStiffness> for_stiffness_;
 };
 
 }  // namespace
 
-std::unique_ptr<System> make_mass_spring(const Network& network, Forces forces) {
-  if (network.dimension == 1) return std::make_unique<MassSpring<1>>(network, forces);
-  if (network.dimension == 2) return std::make_unique<MassSpring<2>>(network, forces);
-  if (network.dimension == 3) return std::make_unique<MassSpring<3>>(network, forces);
+std::unique_ptr<System> make_mass_spring(Network network, Forces forces) {
+  if (network.dimension == 1) return std::make_unique<MassSpring<1>>(std::move(network), forces);
+  if (network.dimension == 2) return std::make_unique<MassSpring<2>>(std::move(network), forces);
+  if (network.dimension == 3) return std::make_unique<MassSpring<3>>(std::move(network), forces);
   throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
 }
 

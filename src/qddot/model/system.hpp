@@ -110,11 +110,11 @@ class System {
   // Whether f, V and K do not depend on t.
   virtual bool is_autonomous() const { return true; }
 
-  // The n x n pattern of K, the same everywhere, with zero values. It is made once and copied by
-  // each user. It is 0 x 0 if the system computes no K.
+  // The n x n pattern of K, the same everywhere, with zero values. It is made once, at the latest
+  // by the first call, and copied by each user. It is 0 x 0 if the system computes no K.
   virtual const SymmetricMatrix& stiffness_pattern() const;
-  // Whether the system computes K.
-  bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
+  // Whether the system computes K. A system that makes its pattern late answers without it.
+  virtual bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
   // Writes K = df/dq [N/m] into `k`, which must have the pattern stiffness_pattern(). Throws
   // std::logic_error if the system computes no K.
   virtual void stiffness(const At& at, SymmetricMatrix& k) const;
