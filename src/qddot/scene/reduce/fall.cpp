@@ -10,9 +10,10 @@ namespace {
 constexpr double few_roundings = 4 * 0x1p-52;
 
 bool has_loose_node(const DrawnPart& drawn) {
+  if (std::ranges::find(drawn.mass, 0.0) == drawn.mass.end()) return false;
   std::vector<bool> is_on_spring(drawn.nodes.size(), false);
-  for (const Spring& spring : drawn.springs) {
-    for (const std::size_t i : spring.nodes) is_on_spring[i] = true;
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    for (const int i : drawn.springs.ends(e)) is_on_spring[static_cast<std::size_t>(i)] = true;
   }
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (drawn.mass[i] == 0 && !is_on_spring[i]) return true;
@@ -30,6 +31,7 @@ void let_fall(DrawnPart& drawn) {
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     mass += drawn.mass[i];
     sum += drawn.mass[i] * (drawn.v[i] - drawn.v.front());
+    if (!drawn.is_loaded()) continue;
     load += drawn.load[i];
     size_of_loads += drawn.load[i].norm();
   }
@@ -45,15 +47,18 @@ void let_fall(DrawnPart& drawn) {
 }
 
 bool rests(const DrawnPart& drawn) {
-  if (drawn.fall.mass == 0 || drawn.is_loaded) return false;
+  if (drawn.fall.mass == 0 || drawn.is_loaded()) return false;
   const double slow = few_roundings * drawn.fall.velocity.lpNorm<Eigen::Infinity>();
   if (largest_coordinate(drawn.v) > slow) return false;
   const double near =
       few_roundings * (largest_coordinate(drawn.x) + drawn.origin.lpNorm<Eigen::Infinity>());
-  return std::ranges::all_of(drawn.springs, [&](const Spring& spring) {
-    const double l = (drawn.x[spring.nodes[1]] - drawn.x[spring.nodes[0]]).norm();
-    return std::abs(l - spring.law.rest_length) <= near;
-  });
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    const auto [a, b] = drawn.springs.ends(e);
+    const double l =
+        (drawn.x[static_cast<std::size_t>(b)] - drawn.x[static_cast<std::size_t>(a)]).norm();
+    if (!(std::abs(l - drawn.springs.law(e).rest_length) <= near)) return false;
+  }
+  return true;
 }
 
 }  // namespace qddot::reduce

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +12,11 @@
 #include "qddot/scene/reduce/frame.hpp"
 #include "qddot/scene/reduce/mirror.hpp"
 #include "qddot/scene/reduce/reductions.hpp"
+#include "qddot/scene/reduce/signs.hpp"
 
 namespace qddot::reduce {
+
+struct FoldedNodes;
 
 // A part's motion in the fewest unknowns q. Every node's position is an affine function of them,
 //   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c.
@@ -71,14 +75,17 @@ class Part {
   // A node as the image of an original, by the signs of its coordinates.
   struct Image {
     int original;
-    Eigen::Vector3d signs;
+    Signs signs;
   };
   // The places of an original's coordinates in q: `axis[a]` is unknown first + a.
   struct Unknowns {
-    Index first;
-    int count;
-    std::array<int, 3> axis;
+    int first;
+    std::int8_t count;
+    std::array<std::int8_t, 3> axis;
   };
+
+  void set_initial(const DrawnPart& drawn, const FoldedNodes& half, const std::vector<int>& numbers,
+                   Index size);
 
   struct Motion {
     Eigen::Vector3d x, v;
