@@ -33,10 +33,6 @@ Scene load(const SceneChoice& choice) {
   return scene;
 }
 
-Scene started(const Scene& drawn, const SceneChoice& choice) {
-  return drawn.starts_at_equilibrium ? settled(drawn, choice.name) : drawn;
-}
-
 double end_time(double asked, bool is_asked, const Scene& scene) {
   if (is_asked) {
     require_positive(asked, "--until", "the time to run to in s");
@@ -75,9 +71,9 @@ Subject subject_of(const SceneChoice& choice, double until) {
 }
 
 Subject subject_of(Scene drawn, const SceneChoice& choice, double until) {
-  Scene start = started(drawn, choice);
-  Model model(start, reductions_of(choice));
-  return {choice.name, std::move(drawn), std::move(start), std::move(model), until};
+  std::optional<Scene> settled = settled_if_asked(drawn, choice.name);
+  Model model(settled ? *settled : drawn, reductions_of(choice));
+  return {choice.name, std::move(drawn), std::move(settled), std::move(model), until};
 }
 
 void require_fit(const Method& method, const Model& model, const std::string& source) {
