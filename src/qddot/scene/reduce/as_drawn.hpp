@@ -38,16 +38,35 @@ class DrawnPotential {
       : gravity_(gravity), weight_(gravity.norm()), place_(tolerances.place), farthest_(farthest) {}
 
   // Adds a spring of length l [m].
-  void add(const SpringLaw& law, double l);
+  void add(const SpringLaw& law, double l) {
+    const double off = 4 * (place_ + eps * (l + law.rest_length));
+    const double strained = std::abs(l - law.rest_length) + off;
+    const double energy = law.energy(l);
+    sum_.value += energy;
+    sum_.error +=
+        (std::abs(law.tension(l)) + 0.5 * law.tangent(law.rest_length + strained) * off) * off;
+    underflows_ += 1 + strained * strained;
+    sizes_ += energy;
+    ++terms_;
+  }
   // Adds a node at x [m] with its load [N].
-  void add(double mass, const Eigen::Vector3d& x, const Eigen::Vector3d& load);
+  void add(double mass, const Eigen::Vector3d& x, const Eigen::Vector3d& load) {
+    const double load_size = load.norm(), pull = mass * weight_ + load_size;
+    sum_.value -= mass * gravity_.dot(x) + load.dot(x);
+    sum_.error += pull * place_;
+    underflows_ += (1 + weight_ + load_size) * (1 + farthest_);
+    sizes_ += 4 * pull * farthest_;
+    ++terms_;
+  }
   BoundedEnergy sum() const;
 
  private:
+  static constexpr double eps = 0x1p-52;
+
   Eigen::Vector3d gravity_;
   double weight_, place_, farthest_;
   BoundedEnergy sum_{};
-  double sizes_ = 0;
+  double sizes_ = 0, underflows_ = 0;
   std::size_t terms_ = 0;
 };
 
@@ -56,12 +75,19 @@ class DrawnKinetic {
  public:
   explicit DrawnKinetic(const Tolerances& tolerances) : off_(tolerances.speed) {}
 
-  void add(double mass, const Eigen::Vector3d& v);
+  void add(double mass, const Eigen::Vector3d& v) {
+    const double square = v.squaredNorm();
+    sum_.value += 0.5 * mass * square;
+    sum_.error += mass * (std::sqrt(square) + 0.5 * off_) * off_;
+    underflows_ += 1 + square;
+    ++terms_;
+  }
   BoundedEnergy sum() const;
 
  private:
   double off_;
   BoundedEnergy sum_{};
+  double underflows_ = 0;
   std::size_t terms_ = 0;
 };
 

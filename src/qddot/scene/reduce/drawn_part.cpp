@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "qddot/model/large_pages.hpp"
+
 namespace qddot::reduce {
 namespace {
 
@@ -23,6 +25,11 @@ Eigen::Vector3d local_origin(const std::vector<Eigen::Vector3d>& x) {
     if (std::max(std::abs(low[d]), std::abs(high[d])) > far * size) origin[d] = x.front()[d];
   }
   return origin;
+}
+
+// Whether all bits are zero, too, so that nothing is lost where such a vector is left out.
+bool is_plus_zero(const Eigen::Vector3d& v) {
+  return std::ranges::all_of(v, [](double x) { return x == 0 && !std::signbit(x); });
 }
 
 // The place of each number in an ascending list: looked up where the list has few gaps, else
@@ -56,7 +63,7 @@ std::vector<std::array<int, 2>> new_ends(const DrawnPart& drawn, const std::vect
     return nodes[node].pinned ? static_cast<int>(drawn.free) + pinned(node) : free(node);
   };
   std::vector<std::array<int, 2>> ends;
-  ends.reserve(chosen.size());
+  reserve_in_large_pages(ends, chosen.size());
   for (const int e : chosen) {
     const auto [a, b] = springs[static_cast<std::size_t>(e)].nodes;
     ends.push_back({number(a), number(b)});
@@ -82,18 +89,23 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
   pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
   drawn.nodes.insert(drawn.nodes.end(), pins.begin(), pins.end());
 
-  drawn.x.reserve(drawn.nodes.size());
-  drawn.v.reserve(drawn.nodes.size());
-  drawn.mass.reserve(drawn.nodes.size());
+  reserve_in_large_pages(drawn.x, drawn.nodes.size());
+  reserve_in_large_pages(drawn.mass, drawn.nodes.size());
   double total_mass = 0;
-  bool is_loaded = false;
+  bool is_loaded = false, moves = false;
   for (const std::size_t i : drawn.nodes) {
     const Node& node = nodes[i];
     drawn.x.push_back(node.position);
-    drawn.v.push_back(node.pinned ? Eigen::Vector3d::Zero() : node.velocity);
     drawn.mass.push_back(node.pinned ? 0 : node.mass);
     is_loaded = is_loaded || !node.acting_load().isZero(0);
+    moves = moves || !(node.pinned || is_plus_zero(node.velocity));
     total_mass += drawn.mass.back();
+  }
+  if (moves) {
+    reserve_in_large_pages(drawn.v, drawn.nodes.size());
+    for (const std::size_t i : drawn.nodes) {
+      drawn.v.push_back(nodes[i].pinned ? Eigen::Vector3d::Zero() : nodes[i].velocity);
+    }
   }
   if (is_loaded) {
     for (const std::size_t i : drawn.nodes) drawn.load.push_back(nodes[i].acting_load());

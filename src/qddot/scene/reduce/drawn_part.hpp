@@ -20,10 +20,11 @@ struct DrawnPart {
   // the part. Positions are then exact differences. Rounding and tolerances scale with the part's
   // size instead of its distance from the scene's origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
-  std::vector<double> mass{};             // of all of them; 0 where pinned
-  std::vector<Eigen::Vector3d> load{};    // [N], of all of them; 0 where pinned; empty if all are
-  PartSprings springs{};                  // between numbers of this part
+  std::vector<Eigen::Vector3d> x{};     // of all of them
+  std::vector<Eigen::Vector3d> v{};     // of all of them; 0 where pinned; empty if all are 0
+  std::vector<double> mass{};           // of all of them; 0 where pinned
+  std::vector<Eigen::Vector3d> load{};  // [N], of all of them; 0 where pinned; empty if all are
+  PartSprings springs{};                // between numbers of this part
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
   double gravity_noise = 0;     // the size of gravity [m/s^2] below which it is rounding
@@ -32,8 +33,12 @@ struct DrawnPart {
 
   // Whether a load is not zero.
   bool is_loaded() const { return !load.empty(); }
-  Eigen::Vector3d load_of(std::size_t i) const {
-    return load.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : load[i];
+  Eigen::Vector3d load_of(std::size_t i) const { return of(load, i); }
+  Eigen::Vector3d velocity_of(std::size_t i) const { return of(v, i); }
+
+ private:
+  static Eigen::Vector3d of(const std::vector<Eigen::Vector3d>& vectors, std::size_t i) {
+    return vectors.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : vectors[i];
   }
 };
 

@@ -30,13 +30,13 @@ void let_fall(DrawnPart& drawn) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), load = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     mass += drawn.mass[i];
-    sum += drawn.mass[i] * (drawn.v[i] - drawn.v.front());
+    sum += drawn.mass[i] * (drawn.velocity_of(i) - drawn.velocity_of(0));
     if (!drawn.is_loaded()) continue;
     load += drawn.load[i];
     size_of_loads += drawn.load[i].norm();
   }
   if (!(mass > 0)) return;
-  const Eigen::Vector3d mean = drawn.v.front() + sum / mass;
+  const Eigen::Vector3d mean = drawn.velocity_of(0) + sum / mass;
   if (!mean.allFinite()) return;
   const Eigen::Vector3d mean_load = load / mass;
   if (!mean_load.allFinite()) return;

@@ -1,8 +1,9 @@
 #include "qddot/scene/reduce/folded_part.hpp"
 
 #include <algorithm>
-#include <tuple>
+#include <cstdint>
 
+#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/reduce/grouped.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 
@@ -10,8 +11,6 @@ namespace qddot::reduce {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr int none = -1;
 
 // The node of i's orbit that represents the whole orbit.
 int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vector3d>& y) {
@@ -30,7 +29,7 @@ int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vect
 }
 
 std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedNodes& half) {
-  std::vector<ImageOf> images(half.y.size());
+  std::vector<ImageOf> images = filled_in_large_pages(half.y.size(), ImageOf{});
   for (int i = 0; i < std::ssize(images); ++i) {
     if (original_of(i, orbits, mirrors, half.y) != i) continue;
     const unsigned zero = half.on_planes[static_cast<std::size_t>(i)];
@@ -48,7 +47,7 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedNo
 FoldedNodes folded(const DrawnPart& drawn, const Mirrors& mirrors) {
   FoldedNodes half;
   const Orbits orbits(mirrors.images);
-  half.y.reserve(drawn.nodes.size());
+  reserve_in_large_pages(half.y, drawn.nodes.size());
   half.on_planes.reserve(drawn.nodes.size());
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     half.y.push_back(mirrors.frame.point(drawn.x[i]));
@@ -68,76 +67,55 @@ FoldedSprings::FoldedSprings(const DrawnPart& drawn, const FoldedNodes& half,
   if (mirrors.count > 0) chain_images(rounding * largest_coordinate(drawn.x));
 }
 
-FoldedSpring FoldedSprings::at(int e) const {
-  const auto [ends, law, holds, stiff] = drawn_.springs[e];
-  const auto a = static_cast<std::size_t>(ends[0]), b = static_cast<std::size_t>(ends[1]);
-  const ImageOf &i = half_.images[a], &j = half_.images[b];
-  // A sign of a coordinate that is zero at one end changes no length.
-  const unsigned zero = half_.on_planes[static_cast<std::size_t>(i.original)] |
-                        half_.on_planes[static_cast<std::size_t>(j.original)];
-  return {i.original, j.original, i.signs.times(j.signs).without(zero), law, holds, stiff};
-}
-
-std::optional<FoldedSpring> FoldedSprings::sum_at(int e) const {
-  if (next_.empty()) return at(e);
-  if (is_part_of_sum_[static_cast<std::size_t>(e)]) return {};
-  FoldedSpring sum = at(e);
-  for (int more = next_[static_cast<std::size_t>(e)]; more != none;
-       more = next_[static_cast<std::size_t>(more)]) {
-    const PartSprings::One next = drawn_.springs[more];
-    sum.law.stiffness += next.law.stiffness;
-    sum.law.quartic += next.law.quartic;
-    sum.stiff = sum.stiff || next.stiff;
-  }
-  return sum;
-}
-
 // Springs with the same ends, images and length may be added. They are found among those with the
 // same lower end.
 void FoldedSprings::chain_images(double tolerance) {
   const auto springs = static_cast<std::size_t>(drawn_.springs.size());
-  next_.assign(springs, none);
-  is_part_of_sum_.assign(springs, false);
+  next_ = filled_in_large_pages(springs, none);
+  is_in_other_.assign(springs, false);
   const Grouped by_low(static_cast<int>(half_.y.size()), drawn_.springs.size(), [&](int e) {
     const auto [a, b] = drawn_.springs.ends(e);
     return std::min(half_.images[static_cast<std::size_t>(a)].original,
                     half_.images[static_cast<std::size_t>(b)].original);
   });
   struct Image {
-    int high;
-    unsigned char minus;
-    Holds holds;
+    std::uint64_t kind;  // the higher end, mirror and validity
     double rest_length;
     int e;
-    auto ends() const { return std::tuple(high, minus, holds); }
     bool operator<(const Image& other) const {
-      return std::tuple(ends(), rest_length, e) <
-             std::tuple(other.ends(), other.rest_length, other.e);
+      if (kind != other.kind) return kind < other.kind;
+      return rest_length != other.rest_length ? rest_length < other.rest_length : e < other.e;
     }
   };
+  constexpr int ahead = 8;
   std::vector<Image> images;
   for (int low = 0; low < by_low.groups(); ++low) {
     images.clear();
+    if (low + ahead < by_low.groups()) {
+      for (const int e : by_low[low + ahead]) drawn_.springs.prefetch(e);
+    }
     for (const int e : by_low[low]) {
-      const FoldedSpring spring = at(e);
-      const bool joins_itself = spring.a == spring.b && spring.mirror.are_all_plus();
-      if (joins_itself) {
-        is_part_of_sum_[static_cast<std::size_t>(e)] = true;
+      const FoldedEnds own = ends(e);
+      if (own.coincide()) {
+        is_in_other_[static_cast<std::size_t>(e)] = true;
         --count_;
       } else {
-        images.push_back({std::max(spring.a, spring.b), spring.mirror.minus, spring.holds,
-                          spring.law.rest_length, e});
+        const PartSprings::One spring = drawn_.springs[e];
+        const auto high = static_cast<std::uint64_t>(std::max(own.a, own.b));
+        const auto holds = static_cast<std::uint64_t>(spring.holds);
+        images.push_back(
+            {high << 16 | std::uint64_t{own.mirror.minus} << 8 | holds, spring.law.rest_length, e});
       }
     }
     std::ranges::sort(images, std::less<>());
     for (std::size_t i = 1, first = 0; i < images.size(); ++i) {
-      if (images[i].ends() != images[first].ends() ||
+      if (images[i].kind != images[first].kind ||
           images[i].rest_length - images[first].rest_length > tolerance) {
         first = i;
         continue;
       }
       next_[static_cast<std::size_t>(images[i - 1].e)] = images[i].e;
-      is_part_of_sum_[static_cast<std::size_t>(images[i].e)] = true;
+      is_in_other_[static_cast<std::size_t>(images[i].e)] = true;
       --count_;
     }
   }

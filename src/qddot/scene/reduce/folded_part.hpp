@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,10 +28,18 @@ struct FoldedNodes {
 // Folds the nodes of a part along its mirrors.
 FoldedNodes folded(const DrawnPart& drawn, const Mirrors& mirrors);
 
-// A spring between originals: it ends at y_a and at diag(mirror) y_b.
-struct FoldedSpring {
+// The ends of a spring between originals: at y_a and at diag(mirror) y_b.
+struct FoldedEnds {
   int a, b;
   Signs mirror;
+
+  // Whether both are one node for ever.
+  bool coincide() const { return a == b && mirror.are_all_plus(); }
+};
+
+// A spring between originals.
+struct FoldedSpring {
+  FoldedEnds ends;
   SpringLaw law;
   Holds holds;
   bool stiff;
@@ -49,23 +56,49 @@ class FoldedSprings {
   // Calls see(FoldedSpring) for each, in the order of the part's springs.
   template <class See>
   void for_each(const See& see) const {
+    constexpr int ahead = 32;
     for (int e = 0; e < drawn_.springs.size(); ++e) {
-      if (const std::optional<FoldedSpring> sum = sum_at(e)) see(*sum);
+      if (e + ahead < std::ssize(next_) && next(e + ahead) != none)
+        drawn_.springs.prefetch(next(e + ahead));
+      if (next_.empty() || !is_in_other_[static_cast<std::size_t>(e)]) see(sum_at(e));
     }
   }
   std::size_t count() const { return count_; }
 
  private:
-  std::optional<FoldedSpring> sum_at(int e) const;
-  FoldedSpring at(int e) const;
+  FoldedEnds ends(int e) const {
+    const auto [from, to] = drawn_.springs.ends(e);
+    const ImageOf a = half_.images[static_cast<std::size_t>(from)],
+                  b = half_.images[static_cast<std::size_t>(to)];
+    // A sign of a coordinate that is zero at one end changes no length.
+    const unsigned zero = half_.on_planes[static_cast<std::size_t>(a.original)] |
+                          half_.on_planes[static_cast<std::size_t>(b.original)];
+    return {a.original, b.original, a.signs.times(b.signs).without(zero)};
+  }
+  // The spring that begins a sum, with all that it stands for.
+  FoldedSpring sum_at(int e) const {
+    const auto [drawn_ends, law, holds, stiff] = drawn_.springs[e];
+    FoldedSpring sum{ends(e), law, holds, stiff};
+    if (next_.empty()) return sum;
+    for (int more = next(e); more != none; more = next(more)) {
+      const PartSprings::One other = drawn_.springs[more];
+      sum.law.stiffness += other.law.stiffness;
+      sum.law.quartic += other.law.quartic;
+      sum.stiff = sum.stiff || other.stiff;
+    }
+    return sum;
+  }
+  int next(int e) const { return next_[static_cast<std::size_t>(e)]; }
   void chain_images(double tolerance);
+
+  static constexpr int none = -1;
 
   const DrawnPart& drawn_;
   const FoldedNodes& half_;
-  // Empty without mirrors. Of each spring: the next one of the same sum, or -1; and whether it is
+  // Empty without mirrors. Of each spring: the next one of the same sum, or none; and whether it is
   // in the sum of another, or left out.
   std::vector<int> next_;
-  std::vector<bool> is_part_of_sum_;
+  std::vector<bool> is_in_other_;
   std::size_t count_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "qddot/scene/reduce/mirror.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -137,10 +138,12 @@ class MirrorSearch {
   // place, where its direction is undefined.
   bool has_unclear_spring() const {
     constexpr double clear = 1024;  // a direction accurate to a thousandth
+    const double least = clear * tolerance_, surely = 2 * least * least;
     for (int e = 0; e < drawn_.springs.size(); ++e) {
       const auto [a, b] = drawn_.springs.ends(e);
-      if (drawn_.springs.law(e).rest_length > 0 &&
-          !((drawn_.x[at(b)] - drawn_.x[at(a)]).norm() > clear * tolerance_))
+      const double square = (drawn_.x[at(b)] - drawn_.x[at(a)]).squaredNorm();
+      if (!(square > surely) && drawn_.springs.law(e).rest_length > 0 &&
+          !(std::sqrt(square) > least))
         return true;
     }
     return false;
@@ -213,7 +216,8 @@ class MirrorSearch {
     const int free = static_cast<int>(drawn_.free);
     return (j < free) == (i < free) &&
            nearly(drawn_.mass[at(i)], drawn_.mass[at(j)], near.mass * drawn_.mass[at(i)]) &&
-           (plane.turned(drawn_.v[at(i)]) - drawn_.v[at(j)]).norm() <= near.speed &&
+           (drawn_.v.empty() ||
+            (plane.turned(drawn_.v[at(i)]) - drawn_.v[at(j)]).norm() <= near.speed) &&
            (!drawn_.is_loaded() ||
             (plane.turned(drawn_.load[at(i)]) - drawn_.load[at(j)]).norm() <= near.load);
   }
@@ -287,13 +291,30 @@ class MirrorSearch {
   }
 
   bool maps_springs(const Images& images) const {
+    if (!ends_.any_shared()) return maps_single_springs(images);
     for (int e = 0; e < drawn_.springs.size(); ++e) {
       const auto [a, b] = drawn_.springs.ends(e);
-      const int c = images[at(a)], d = images[at(b)];
-      if (ends_.any_shared()) {
-        if (!are_springs_alike(a, b, c, d)) return false;
-      } else if (const int image = ends_.first_between(c, d); image < 0 || !are_alike(e, image)) {
-        return false;
+      if (!are_springs_alike(a, b, images[at(a)], images[at(b)])) return false;
+    }
+    return true;
+  }
+
+  // The same if no two springs join the same nodes.
+  bool maps_single_springs(const Images& images) const {
+    const int springs = drawn_.springs.size();
+    std::array<int, 256> image_of;  // of a block of springs
+    constexpr int block = image_of.size();
+    for (int first = 0; first < springs; first += block) {
+      const int end = std::min(first + block, springs);
+      for (int e = first; e < end; ++e) {
+        const auto [a, b] = drawn_.springs.ends(e);
+        const int image = ends_.first_between(images[at(a)], images[at(b)]);
+        if (image < 0) return false;
+        drawn_.springs.prefetch(image);
+        image_of[at(e - first)] = image;
+      }
+      for (int e = first; e < end; ++e) {
+        if (!are_alike(e, image_of[at(e - first)])) return false;
       }
     }
     return true;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "qddot/model/constrained_system.hpp"
+#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/reduce/folded_part.hpp"
 #include "qddot/scene/reduce/straight.hpp"
 
@@ -23,7 +24,8 @@ std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedNodes& half, boo
 
 void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
                 const std::vector<int>& numbers, Network& network) {
-  const auto& [a, b, mirror, law, holds, stiff] = spring;
+  const auto& [a, b, mirror] = spring.ends;
+  const auto& [ends, law, holds, stiff] = spring;
   const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
   const int i = numbers[from], j = numbers[to];
   const Eigen::Vector3d signs = mirror.diagonal();
@@ -62,14 +64,28 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(drawn, frame);
 
   const bool with_pins = !reductions.has(Reduction::pins);
-  const int axes = frame.dimension;
-  const FoldedNodes half = folded(drawn, mirrors_);
-  const std::vector<int> numbers = numbers_of(drawn, half, with_pins);
-
-  Network network{.dimension = axes};
+  std::vector<bool> is_held;
+  Network network = make_network(drawn, dimension, with_pins, is_held);
   network.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
   network.offers_split = drawn.offers_split;
-  std::vector<bool> is_held;
+  if (network.uses_constant_stiffness && !with_pins) {
+    if (auto straight = straightened(network, initial_.q, initial_.v, is_loaded_)) {
+      network = std::move(*straight);
+      is_straightened_ = true;
+    }
+  }
+  system_ = make_mass_spring(std::move(network));
+  if (with_pins) system_ = std::make_unique<ConstrainedSystem>(std::move(system_), is_held);
+}
+
+// Folds the part along its mirrors, and makes a network of its originals. `is_held`: of each
+// unknown, whether it belongs to a pin.
+Network Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins,
+                           std::vector<bool>& is_held) {
+  const int axes = mirrors_.frame.dimension;
+  const FoldedNodes half = folded(drawn, mirrors_);
+  const std::vector<int> numbers = numbers_of(drawn, half, with_pins);
+  Network network{.dimension = axes};
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (numbers[i] == no_number) continue;
     const int first = layout_.empty() ? 0 : layout_.back().first + layout_.back().count;
@@ -88,6 +104,9 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   network.node_mass = Vec::Zero(count);
   network.load = Vec::Zero(axes * count);
   const Eigen::Vector3d g = mirrors_.frame.direction(drawn.gravity);
+  reserve_in_large_pages(nodes_, drawn.free);
+  reserve_in_large_pages(masses_, drawn.free);
+  reserve_in_large_pages(images_, drawn.free);
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     const ImageOf image = half.images[i];
     const int number = numbers[static_cast<std::size_t>(image.original)];
@@ -111,24 +130,16 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
     images_.push_back({number, image.signs});
   }
   const FoldedSprings springs(drawn, half, mirrors_);
-  network.links.reserve(springs.count());
+  reserve_in_large_pages(network.links, springs.count());
   const bool may_fold = axes == 1 && dimension > 1;
   const std::vector<bool> joints = may_fold ? joints_of(drawn) : std::vector<bool>();
   springs.for_each([&](FoldedSpring spring) {
-    const bool would_fold = may_fold && (joints[static_cast<std::size_t>(spring.a)] ||
-                                         joints[static_cast<std::size_t>(spring.b)]);
+    const bool would_fold = may_fold && (joints[static_cast<std::size_t>(spring.ends.a)] ||
+                                         joints[static_cast<std::size_t>(spring.ends.b)]);
     if (would_fold) spring.holds = Holds::in_tension;
     add_spring(spring, half, numbers, network);
   });
-
-  if (network.uses_constant_stiffness && !with_pins) {
-    if (auto straight = straightened(network, initial_.q, initial_.v, is_loaded_)) {
-      network = std::move(*straight);
-      is_straightened_ = true;
-    }
-  }
-  system_ = make_mass_spring(std::move(network));
-  if (with_pins) system_ = std::make_unique<ConstrainedSystem>(std::move(system_), is_held);
+  return network;
 }
 
 // The start of the originals. A coordinate that stays zero is no unknown.
@@ -138,7 +149,7 @@ void Part::set_initial(const DrawnPart& drawn, const FoldedNodes& half,
   Index at = 0;
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (numbers[i] == no_number) continue;
-    const Eigen::Vector3d w = mirrors_.frame.direction(drawn.v[i]);
+    const Eigen::Vector3d w = mirrors_.frame.direction(drawn.velocity_of(i));
     for (int d = 0; d < mirrors_.frame.dimension; ++d) {
       if (half.on_planes[i] >> d & 1) continue;
       initial_.q[at] = half.y[i][d];

@@ -84,6 +84,8 @@ class Part {
     std::array<std::int8_t, 3> axis;
   };
 
+  Network make_network(const DrawnPart& drawn, int dimension, bool with_pins,
+                       std::vector<bool>& is_held);
   void set_initial(const DrawnPart& drawn, const FoldedNodes& half, const std::vector<int>& numbers,
                    Index size);
 

@@ -19,7 +19,7 @@ std::optional<std::string> Part::difference_from(const DrawnPart& drawn) const {
   if (auto where = places_differ(drawn, tolerances.place, tolerances.speed)) return where;
   if (auto mass = masses_differ(drawn)) return mass;
   DrawnKinetic kinetic(tolerances);
-  for (std::size_t i = 0; i < drawn.v.size(); ++i) kinetic.add(drawn.mass[i], drawn.v[i]);
+  for (std::size_t i = 0; i < drawn.x.size(); ++i) kinetic.add(drawn.mass[i], drawn.velocity_of(i));
   const BoundedEnergy t = kinetic.sum();
   if (const double own = system_->kinetic(initial_.v); differs(t, own)) {
     return instead_of("the kinetic energy at the start", own, t.value, "J");
@@ -53,7 +53,7 @@ std::optional<std::string> Part::places_differ(const DrawnPart& drawn, double to
     if (off > tolerance) {
       return fmt::format("node {} would start {:.3g} m from its place", drawn.nodes[i], off);
     }
-    const double speed_off = (start.v - drawn.v[i]).norm();
+    const double speed_off = (start.v - drawn.velocity_of(i)).norm();
     if (speed_off > speed_tolerance) {
       return fmt::format("node {} would start with a velocity off by {:.3g} m/s", drawn.nodes[i],
                          speed_off);
