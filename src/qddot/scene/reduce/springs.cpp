@@ -56,6 +56,7 @@ std::optional<std::vector<Spring>> merged_springs(const std::vector<Spring>& spr
   if (!has_equal && std::ranges::all_of(springs, acts)) return {};
   std::vector<Spring> merged = has_equal ? sums_of(springs, by_low) : springs;
   std::erase_if(merged, [](const Spring& spring) { return !acts(spring); });
+  if (merged.size() == springs.size()) return {};  // other lengths, so that none were added
   return merged;
 }
 
