@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "qddot/model/large_pages.hpp"
-#include "qddot/scene/reduce/grouped.hpp"
+#include "qddot/scene/grouped.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 
 namespace qddot::reduce {

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "qddot/algebra/dense_pairs.hpp"
-#include "qddot/scene/reduce/grouped.hpp"
+#include "qddot/scene/grouped.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 #include "qddot/scene/reduce/places.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "qddot/scene/reduce/grouped.hpp"
+#include "qddot/scene/grouped.hpp"
 
 namespace qddot::reduce {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "qddot/model/large_pages.hpp"
 
-namespace qddot::reduce {
+namespace qddot {
 
 // Numbers 0 ... count - 1 in groups, by one counting sort: linear time, and one array for all. Each
 // group keeps the order of its numbers. Examples: springs by their lower end, nodes by their part.
@@ -59,4 +59,4 @@ bool any_share_both_ends(const Grouped& by_low, const HighOf& high_of) {
   return false;
 }
 
-}  // namespace qddot::reduce
+}  // namespace qddot
