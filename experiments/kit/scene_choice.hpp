@@ -23,6 +23,15 @@ struct SceneChoice {
 // Throws InvalidInput if there is none or it is wrong.
 Scene load(const SceneChoice& choice);
 
+// Says that a scene is being reduced while this lives, where that takes a while.
+class Reducing {
+ public:
+  explicit Reducing(const Scene& scene);
+  ~Reducing();
+  Reducing(const Reducing&) = delete;
+  Reducing& operator=(const Reducing&) = delete;
+};
+
 // The end time [s]: the one the user asked for, else the scene's own. Throws InvalidInput if there
 // is neither or it is not positive.
 double end_time(double asked, bool is_asked, const Scene& scene);

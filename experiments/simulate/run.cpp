@@ -161,8 +161,10 @@ int run_method(const Arguments& a) {
   if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
   const std::optional<Scene> settled = settled_if_asked(drawn, a.scene->name);
   const Scene& start = settled ? *settled : drawn;
-  const auto model =
-      std::make_shared<const Model>(reduced_for(method, start, reductions_of(a.scene)));
+  const auto model = [&] {
+    const Reducing reducing(start);
+    return std::make_shared<const Model>(reduced_for(method, start, reductions_of(a.scene)));
+  }();
   const Model& scene = *model;
   require_fit(method, scene, a.scene->name);
   Simulation run(model, method, options);

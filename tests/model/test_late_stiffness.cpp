@@ -126,4 +126,30 @@ BOOST_AUTO_TEST_CASE(forces_and_energies_stay_the_same_when_k_is_made) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(row_sums_are_bounded_without_k) {
+  for (const int dimension : {1, 2, 3}) {
+    for (const int nodes : {6, 40}) {
+      const Problem p = tangled(dimension, nodes);
+      for (const int kind : {0, 1, 2}) {
+        Vec q = p.initial.q, bounds;
+        if (kind == 2) q = q.replicate(2, 1).eval();
+        const auto system = make(p, kind);
+        BOOST_TEST_REQUIRE(system->bound_row_sums(q, bounds));
+        SymmetricMatrix k = system->stiffness_pattern();
+        system->stiffness(q, k);
+        const Eigen::MatrixXd whole = dense(k);
+        const Vec sums = whole.cwiseAbs().rowwise().sum();
+        BOOST_TEST(bounds.size() == sums.size());
+        // Sums of a few positive numbers.
+        BOOST_TEST((sums.array() <= (1 + 1e-14) * bounds.array()).all());
+        // A block's row is at most as long as its diagonal entry times the root of three, so that
+        // little is lost where no spring is compressed.
+        if (kind != 1) BOOST_TEST((bounds.array() <= 4 * sums.array()).all());
+        // Now K is cheaper.
+        BOOST_TEST(!system->bound_row_sums(q, bounds));
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

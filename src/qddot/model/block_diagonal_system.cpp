@@ -57,6 +57,17 @@ const SymmetricMatrix& BlockDiagonalSystem::stiffness_pattern() const {
   return pattern_;
 }
 
+bool BlockDiagonalSystem::bound_row_sums(const ConstVec& q, Vec& sums) const {
+  sums.resize(size());
+  bool all = true;
+  Vec own_sums;
+  for_each(blocks_, VecView(q), [&](const System& block, const At& own, Index first) {
+    all = all && block.bound_row_sums(own.q, own_sums);
+    if (all) sums.segment(first, block.size()) = own_sums;
+  });
+  return all;
+}
+
 SymmetricMatrix BlockDiagonalSystem::joined_patterns() const {
   SymmetricMatrix pattern(size(), size());
   Index nonzeros = 0;

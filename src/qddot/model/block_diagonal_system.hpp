@@ -26,6 +26,7 @@ class BlockDiagonalSystem final : public CapableSystem {
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override;
   bool has_stiffness() const override;
+  bool bound_row_sums(const ConstVec& q, Vec& sums) const override;
   bool stiffness_is_constant() const override;
 
   const SplitStiffness* split_stiffness() const override;

@@ -26,6 +26,9 @@ class ConstrainedSystem final : public CapableSystem {
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool has_stiffness() const override { return system_->has_stiffness(); }
+  bool bound_row_sums(const ConstVec& q, Vec& sums) const override {
+    return system_->bound_row_sums(q, sums);
+  }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
 
   const SplitStiffness* split_stiffness() const override {

@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <stdexcept>
 
 #include "qddot/model/capabilities.hpp"
@@ -150,6 +151,27 @@ class MassSpring final : public CapableSystem {
   }
   bool has_stiffness() const override { return true; }
   bool stiffness_is_constant() const override { return linear_; }
+  // The blocks of springs are added by their absolute values: |sum B| <= sum |B|.
+  bool bound_row_sums(const ConstVec& at, Vec& sums) const override {
+    const std::shared_lock lock(links_in_use_);
+    if (links_are_in_lists_) return false;  // K is made already
+    const VecView q = at;
+    sums.setZero(size());
+    const auto add = [&](const auto& spring, const Point& d, int node, double times) {
+      const Point rows = times * spring_stiffness(spring.law, d).cwiseAbs().rowwise().sum();
+      layout_.add(rows, node, sums);
+    };
+    const auto add_link = [&](const auto& link, const Point& mirror) {
+      const Point d = mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
+      // In its own block and in that with the other end.
+      for (const int node : {link.i, link.j}) add(link, d, node, 2);
+    };
+    for (const auto& link : network_.links) add_link(link, Point::Ones());
+    for (const auto& link : network_.image_links) add_link(link, link.mirror.template head<D>());
+    for (const auto& anchor : network_.anchors)
+      add(anchor, anchor.point.template head<D>() - layout_.at(q, anchor.i), anchor.i, 1);
+    return true;
+  }
 
   const SplitStiffness* split_stiffness() const override { return this; }
   const DiscreteGradient* discrete_gradient() const override { return this; }
@@ -281,6 +303,8 @@ class MassSpring final : public CapableSystem {
           for_stiffness_.emplace(ForStiffness{{network_, layout_, lists()}, std::nullopt});
       if (by_node_) own.columns.emplace(network_, layout_, *by_node_, own.blocks.pattern());
       // The lists hold the same springs.
+      const std::unique_lock lock(links_in_use_);
+      links_are_in_lists_ = true;
       network_.links = {};
       network_.image_links = {};
     });
@@ -334,6 +358,8 @@ class MassSpring final : public CapableSystem {
   std::optional<Split> split_;
   // The springs that lists and K are made of, its links only until then.
   mutable Network network_;
+  mutable bool links_are_in_lists_ = false;
+  mutable std::shared_mutex links_in_use_;  // of the two above
   mutable std::once_flag lists_made_, for_stiffness_made_;
   mutable std::optional<SpringLists<D>> springs_;  // from the start without by_node_
   mutable std::optional<ForStiffness> for_stiffness_;

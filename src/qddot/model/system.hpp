@@ -118,6 +118,9 @@ class System {
   // Writes K = df/dq [N/m] into `k`, which must have the pattern stiffness_pattern(). Throws
   // std::logic_error if the system computes no K.
   virtual void stiffness(const At& at, SymmetricMatrix& k) const;
+  // Writes bounds of the sums of |K_ij| over each row i at q [N/m], found without K, into `sums`
+  // (n) and returns true. Returns false if the system has none, or none that is cheaper than its K.
+  virtual bool bound_row_sums(const ConstVec&, Vec& /*sums*/) const { return false; }
   // Whether K is the same at every q of the motion, so that the motion is linear.
   virtual bool stiffness_is_constant() const { return false; }
 

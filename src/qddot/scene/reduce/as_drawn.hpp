@@ -9,6 +9,8 @@
 
 namespace qddot::reduce {
 
+struct DrawnPart;
+
 // An energy [J] and a bound of its error.
 struct BoundedEnergy {
   double value = 0, error = 0;
@@ -89,6 +91,14 @@ class DrawnKinetic {
   BoundedEnergy sum_{};
   double underflows_ = 0;
   std::size_t terms_ = 0;
+};
+
+// The energies of a part as drawn, and the tolerances of its places and speeds.
+struct DrawnEnergies {
+  explicit DrawnEnergies(const DrawnPart& drawn);
+
+  Tolerances tolerances;
+  BoundedEnergy kinetic, potential;
 };
 
 // Whether two energies differ by more than the error. False if one is NaN, which is found and

@@ -53,10 +53,9 @@ class PlaceOf {
   std::vector<int> places_;
 };
 
-// The ends of the chosen springs by the part's numbers.
-std::vector<std::array<int, 2>> new_ends(const DrawnPart& drawn, const std::vector<int>& chosen,
-                                         const std::vector<Node>& nodes,
-                                         const std::vector<Spring>& springs) {
+// The chosen springs, with their ends by the part's numbers.
+PartSprings renumbered(const DrawnPart& drawn, std::vector<int> chosen,
+                       const std::vector<Node>& nodes, const std::vector<Spring>& springs) {
   const std::span all(drawn.nodes);
   const PlaceOf free(all.first(drawn.free)), pinned(all.subspan(drawn.free));
   const auto number = [&](std::size_t node) {
@@ -68,7 +67,7 @@ std::vector<std::array<int, 2>> new_ends(const DrawnPart& drawn, const std::vect
     const auto [a, b] = springs[static_cast<std::size_t>(e)].nodes;
     ends.push_back({number(a), number(b)});
   }
-  return ends;
+  return {springs, std::move(chosen), std::move(ends)};
 }
 
 }  // namespace
@@ -115,9 +114,20 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
   drawn.origin = local_origin(drawn.x);
   for (Eigen::Vector3d& x : drawn.x) x -= drawn.origin;
 
-  std::vector<std::array<int, 2>> ends = new_ends(drawn, members.springs, nodes, springs);
-  drawn.springs = {springs, std::move(members.springs), std::move(ends)};
+  drawn.springs = renumbered(drawn, std::move(members.springs), nodes, springs);
   return drawn;
+}
+
+PartSprings drawn_springs(const DrawnPart& drawn, const std::vector<Node>& nodes,
+                          const std::vector<Spring>& springs) {
+  std::vector<bool> is_own(nodes.size(), false);
+  for (std::size_t i = 0; i < drawn.free; ++i) is_own[drawn.nodes[i]] = true;
+  std::vector<int> chosen;
+  for (int e = 0; e < std::ssize(springs); ++e) {
+    const auto [a, b] = springs[static_cast<std::size_t>(e)].nodes;
+    if (is_own[a] || is_own[b]) chosen.push_back(e);
+  }
+  return renumbered(drawn, std::move(chosen), nodes, springs);
 }
 
 double largest_coordinate(const std::vector<Eigen::Vector3d>& vectors) {

@@ -47,6 +47,10 @@ struct DrawnPart {
 DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
                      const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
 
+// The springs of the part once more, found among all by its nodes.
+PartSprings drawn_springs(const DrawnPart& drawn, const std::vector<Node>& nodes,
+                          const std::vector<Spring>& springs);
+
 // The relative error that rounding may have left in coordinates that come from a few operations.
 inline constexpr double rounding = 64 * 0x1p-52;
 

@@ -64,28 +64,32 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(drawn, frame);
 
   const bool with_pins = !reductions.has(Reduction::pins);
-  std::vector<bool> is_held;
-  Network network = make_network(drawn, dimension, with_pins, is_held);
-  network.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
-  network.offers_split = drawn.offers_split;
-  if (network.uses_constant_stiffness && !with_pins) {
-    if (auto straight = straightened(network, initial_.q, initial_.v, is_loaded_)) {
-      network = std::move(*straight);
+  make_network(drawn, dimension, with_pins);
+  network_.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
+  network_.offers_split = drawn.offers_split;
+  if (network_.uses_constant_stiffness && !with_pins) {
+    if (auto straight = straightened(network_, initial_.q, initial_.v, is_loaded_)) {
+      network_ = std::move(*straight);
       is_straightened_ = true;
     }
   }
-  system_ = make_mass_spring(std::move(network));
-  if (with_pins) system_ = std::make_unique<ConstrainedSystem>(std::move(system_), is_held);
+  if (!with_pins) is_held_.clear();
 }
 
-// Folds the part along its mirrors, and makes a network of its originals. `is_held`: of each
-// unknown, whether it belongs to a pin.
-Network Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins,
-                           std::vector<bool>& is_held) {
+void Part::make_system() {
+  system_ = make_mass_spring(std::move(network_));
+  network_ = {};
+  if (!is_held_.empty())
+    system_ = std::make_unique<ConstrainedSystem>(std::move(system_), std::move(is_held_));
+}
+
+// Folds the part along its mirrors, and makes a network of its originals.
+void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
   const int axes = mirrors_.frame.dimension;
   const FoldedNodes half = folded(drawn, mirrors_);
   const std::vector<int> numbers = numbers_of(drawn, half, with_pins);
-  Network network{.dimension = axes};
+  Network& network = network_;
+  network.dimension = axes;
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (numbers[i] == no_number) continue;
     const int first = layout_.empty() ? 0 : layout_.back().first + layout_.back().count;
@@ -93,12 +97,12 @@ Network Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins
     for (int d = 0; d < axes; ++d) {
       if (half.on_planes[i] >> d & 1) continue;
       unknowns.axis[static_cast<std::size_t>(unknowns.count++)] = static_cast<std::int8_t>(d);
-      is_held.push_back(i >= drawn.free);
+      is_held_.push_back(i >= drawn.free);
     }
     layout_.push_back(unknowns);
     if (mirrors_.count > 0) network.zero_coordinates.push_back(half.on_planes[i]);
   }
-  set_initial(drawn, half, numbers, std::ssize(is_held));
+  set_initial(drawn, half, numbers, std::ssize(is_held_));
 
   const auto count = std::ssize(layout_);
   network.node_mass = Vec::Zero(count);
@@ -139,7 +143,6 @@ Network Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins
     if (would_fold) spring.holds = Holds::in_tension;
     add_spring(spring, half, numbers, network);
   });
-  return network;
 }
 
 // The start of the originals. A coordinate that stays zero is no unknown.

@@ -16,6 +16,7 @@
 
 namespace qddot::reduce {
 
+struct DrawnEnergies;
 struct FoldedNodes;
 
 // A part's motion in the fewest unknowns q. Every node's position is an affine function of them,
@@ -27,7 +28,11 @@ struct FoldedNodes;
 // keep their digits wherever the part lies.
 class Part {
  public:
+  // It has no system yet.
   Part(const DrawnPart& drawn, int dimension, const Reductions& reductions);
+  // Makes the system, once and before all that asks for it. The springs of the drawn part are no
+  // longer needed then: two lists of them beside a system's would be most of the memory.
+  void make_system();
 
   const System& system() const { return *system_; }
   // The state of its unknowns at the start.
@@ -66,10 +71,11 @@ class Part {
   Moments moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const;
 
   // The difference from the drawn part at the start, with both numbers; nothing if all agrees. It
-  // compares nodes, masses, positions, velocities and energies, up to rounding and the tolerances
-  // of the reductions. Momenta and angular momenta follow from the first four. All agrees by
-  // construction: a defect of a reduction shows here. Call before take_system().
-  std::optional<std::string> difference_from(const DrawnPart& drawn) const;
+  // compares nodes, masses, positions, velocities and these energies of it, up to rounding and the
+  // tolerances of the reductions. Momenta and angular momenta follow from the first four. All
+  // agrees by construction: a defect of a reduction shows here. Call before take_system().
+  std::optional<std::string> difference_from(const DrawnPart& drawn,
+                                             const DrawnEnergies& energies) const;
 
  private:
   // A node as the image of an original, by the signs of its coordinates.
@@ -84,8 +90,7 @@ class Part {
     std::array<std::int8_t, 3> axis;
   };
 
-  Network make_network(const DrawnPart& drawn, int dimension, bool with_pins,
-                       std::vector<bool>& is_held);
+  void make_network(const DrawnPart& drawn, int dimension, bool with_pins);
   void set_initial(const DrawnPart& drawn, const FoldedNodes& half, const std::vector<int>& numbers,
                    Index size);
 
@@ -107,6 +112,8 @@ class Part {
   std::vector<double> masses_;    // of the nodes [kg]
   std::vector<Image> images_;     // likewise
   std::vector<Unknowns> layout_;  // of the originals
+  Network network_;               // until the system is made of it
+  std::vector<bool> is_held_;
   std::unique_ptr<System> system_;
   State initial_;
   bool is_straightened_ = false, is_loaded_ = false;

@@ -13,28 +13,33 @@ std::string instead_of(const char* what, double reduced, double drawn, const cha
 
 }  // namespace
 
-std::optional<std::string> Part::difference_from(const DrawnPart& drawn) const {
+DrawnEnergies::DrawnEnergies(const DrawnPart& drawn) {
   const double farthest = largest_coordinate(drawn.x);
-  const Tolerances tolerances = tolerances_of(farthest, largest_coordinate(drawn.v));
+  tolerances = tolerances_of(farthest, largest_coordinate(drawn.v));
+  DrawnKinetic masses(tolerances);
+  for (std::size_t i = 0; i < drawn.x.size(); ++i) masses.add(drawn.mass[i], drawn.velocity_of(i));
+  kinetic = masses.sum();
+  DrawnPotential all(drawn.gravity, tolerances, farthest);
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    const auto [a, b] = drawn.springs.ends(e);
+    all.add(drawn.springs.law(e),
+            (drawn.x[static_cast<std::size_t>(b)] - drawn.x[static_cast<std::size_t>(a)]).norm());
+  }
+  for (std::size_t i = 0; i < drawn.x.size(); ++i) {
+    all.add(drawn.mass[i], drawn.x[i], drawn.load_of(i));
+  }
+  potential = all.sum();
+}
+
+std::optional<std::string> Part::difference_from(const DrawnPart& drawn,
+                                                 const DrawnEnergies& energies) const {
+  const Tolerances& tolerances = energies.tolerances;
   if (auto where = places_differ(drawn, tolerances.place, tolerances.speed)) return where;
   if (auto mass = masses_differ(drawn)) return mass;
-  DrawnKinetic kinetic(tolerances);
-  for (std::size_t i = 0; i < drawn.x.size(); ++i) kinetic.add(drawn.mass[i], drawn.velocity_of(i));
-  const BoundedEnergy t = kinetic.sum();
+  const BoundedEnergy &t = energies.kinetic, &v = energies.potential;
   if (const double own = system_->kinetic(initial_.v); differs(t, own)) {
     return instead_of("the kinetic energy at the start", own, t.value, "J");
   }
-  DrawnPotential potential(drawn.gravity, tolerances, farthest);
-  for (int e = 0; e < drawn.springs.size(); ++e) {
-    const auto [a, b] = drawn.springs.ends(e);
-    potential.add(
-        drawn.springs.law(e),
-        (drawn.x[static_cast<std::size_t>(b)] - drawn.x[static_cast<std::size_t>(a)]).norm());
-  }
-  for (std::size_t i = 0; i < drawn.x.size(); ++i) {
-    potential.add(drawn.mass[i], drawn.x[i], drawn.load_of(i));
-  }
-  const BoundedEnergy v = potential.sum();
   if (const double own = system_->potential(initial_.q); differs(v, own)) {
     return instead_of("the potential energy at the start", own, v.value, "J");
   }

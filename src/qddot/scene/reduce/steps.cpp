@@ -7,6 +7,7 @@
 
 #include "qddot/model/block_diagonal_system.hpp"
 #include "qddot/model/large_pages.hpp"
+#include "qddot/scene/reduce/as_drawn.hpp"
 #include "qddot/scene/reduce/part_members.hpp"
 #include "qddot/scene/reduce/pieces.hpp"
 #include "qddot/scene/reduce/springs.hpp"
@@ -48,7 +49,7 @@ class Steps {
   // The part as its motion is integrated; nothing if it rests in its falling frame.
   std::optional<DrawnPart> moving_part(PartMembers members);
   // The part with all reductions that leave its start as drawn.
-  Part faithful_part(const DrawnPart& drawn);
+  Part faithful_part(DrawnPart& drawn);
   void report(Reduction reduction, std::string what) {
     pieces_.findings.push_back({reduction, std::move(what)});
   }
@@ -154,7 +155,7 @@ void Steps::build(std::vector<PartMembers> parts) {
   std::vector<std::unique_ptr<System>> systems;
   Index n = 0;
   for (PartMembers& members : parts) {
-    const std::optional<DrawnPart> drawn = moving_part(std::move(members));
+    std::optional<DrawnPart> drawn = moving_part(std::move(members));
     if (!drawn) continue;
     Part& part = pieces_.parts.emplace_back(faithful_part(*drawn));
     systems.push_back(part.take_system());
@@ -200,19 +201,27 @@ std::optional<DrawnPart> Steps::moving_part(PartMembers members) {
   return {};
 }
 
-Part Steps::faithful_part(const DrawnPart& drawn) {
+Part Steps::faithful_part(DrawnPart& drawn) {
+  const DrawnEnergies energies(drawn);
   Reductions reductions = reductions_;
-  Part part(drawn, pieces_.dimension, reductions);
+  const auto with_these = [&] {
+    if (drawn.springs.size() == 0) drawn.springs = drawn_springs(drawn, pieces_.nodes, springs());
+    Part part(drawn, pieces_.dimension, reductions);
+    drawn.springs = {};
+    part.make_system();
+    return part;
+  };
+  Part part = with_these();
   for (const Reduction suspect :
        {Reduction::mirror, Reduction::dimension, Reduction::constant_stiffness}) {
     if (!reductions.has(suspect)) continue;
-    const auto difference = part.difference_from(drawn);
+    const auto difference = part.difference_from(drawn, energies);
     if (!difference) return part;
     report(suspect, mistaken_sentence(*difference));
     reductions = reductions.without(suspect);
-    part = Part(drawn, pieces_.dimension, reductions);
+    part = with_these();
   }
-  if (const auto difference = part.difference_from(drawn)) throw defect(*difference);
+  if (const auto difference = part.difference_from(drawn, energies)) throw defect(*difference);
   return part;
 }
 
