@@ -7,6 +7,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/model/constrained_system.hpp"
+#include "tests/measure.hpp"
 #include "tests/model/random_images.hpp"
 #include "tests/problems.hpp"
 

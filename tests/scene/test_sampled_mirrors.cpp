@@ -51,6 +51,29 @@ BOOST_AUTO_TEST_CASE(one_node_or_spring_that_differs_takes_it_whether_it_is_in_t
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_hub_of_many_springs_is_searched_as_a_node_of_few) {
+  // Spokes from a hub, some doubled, in any order; two more of them at one angle than at its image.
+  std::mt19937 random(9);
+  for (const int spokes : {6, 40, 400}) {
+    for (const auto& [is_whole, is_doubled] :
+         {std::pair(true, true), {true, false}, {false, true}, {false, false}}) {
+      Scene scene{.dimension = 2};
+      scene.nodes.push_back({.mass = 1});
+      for (int i = 0; i < spokes; ++i) {
+        const double angle = (i / 2 + 0.3) * M_PI / spokes;
+        scene.nodes.push_back(
+            {.position = {std::cos(angle) * (i % 2 ? 1 : -1), 2 * std::sin(angle), 0}, .mass = 1});
+        const auto end = static_cast<std::size_t>(i + 1);
+        scene.springs.push_back({{0, end}, {10, 1}});
+        if (is_doubled && i / 2 % 3 == 0) scene.springs.push_back({{end, 0}, {7, 0.5}});
+      }
+      std::ranges::shuffle(scene.springs, random);
+      if (!is_whole) scene.springs[random() % scene.springs.size()].law.stiffness *= 2;
+      BOOST_TEST(mirrors(scene) == (is_whole ? 1 : 0), spokes << (is_whole ? "" : ", one differs"));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(places_that_differ_by_rounding_keep_it) {
   Scene scene = cloth();
   std::mt19937 random(8);

@@ -34,6 +34,10 @@ class Grouped {
   }
 
   int groups() const { return static_cast<int>(begin_.size()) - 1; }
+  // The numbers of a group, to be put into another order.
+  std::span<int> numbers(int group) {
+    return {numbers_.data() + begin_[at(group)], numbers_.data() + begin_[at(group) + 1]};
+  }
   std::span<const int> operator[](int group) const {
     return {numbers_.data() + begin_[at(group)], numbers_.data() + begin_[at(group) + 1]};
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "qddot/algebra/dense_pairs.hpp"
@@ -35,31 +36,44 @@ class Ends {
       : springs_(drawn.springs),
         by_low_(static_cast<int>(drawn.x.size()), springs_.size(),
                 [&](int e) { return std::min(springs_.ends(e)[0], springs_.ends(e)[1]); }),
-        any_shared_(any_share_both_ends(by_low_, [&](int e) { return high(e); })) {}
+        any_shared_(any_share_both_ends(by_low_, [&](int e) { return high(e); })) {
+    for (int node = 0; node < by_low_.groups(); ++node) {
+      if (by_low_[node].size() > few)
+        std::ranges::sort(by_low_.numbers(node), {}, [&](int e) { return high(e); });
+    }
+  }
 
   // Whether two springs join the same two nodes.
   bool any_shared() const { return any_shared_; }
 
   // The first spring between two nodes, or -1.
   int first_between(int a, int b) const {
-    const auto [low, high_end] = std::minmax(a, b);
-    for (const int e : by_low_[low]) {
-      if (high(e) == high_end) return e;
-    }
-    return -1;
+    const std::span<const int> near = near_to(a, b);
+    const auto found = std::ranges::find(near, std::max(a, b), [&](int e) { return high(e); });
+    return found == near.end() ? -1 : *found;
   }
 
   // Sets `found` to the springs between two nodes, shortest rest length first.
   void between(int a, int b, std::vector<int>& found) const {
     found.clear();
-    const auto [low, high_end] = std::minmax(a, b);
-    for (const int e : by_low_[low]) {
-      if (high(e) == high_end) found.push_back(e);
+    for (const int e : near_to(a, b)) {
+      if (high(e) == std::max(a, b)) found.push_back(e);
     }
     if (found.size() > 1) std::ranges::sort(found, {}, [&](int e) { return key(e); });
   }
 
  private:
+  // Springs at one node are searched one by one up to so many; more are sorted by their other ends.
+  static constexpr std::size_t few = 16;
+
+  // Springs with the lower of two ends, all those between both among them, and few others.
+  std::span<const int> near_to(int a, int b) const {
+    const std::span<const int> all = by_low_[std::min(a, b)];
+    if (all.size() <= few) return all;
+    const auto high_of = [&](int e) { return high(e); };
+    return {std::ranges::lower_bound(all, std::max(a, b), {}, high_of),
+            std::ranges::upper_bound(all, std::max(a, b), {}, high_of)};
+  }
   int high(int e) const { return std::max(springs_.ends(e)[0], springs_.ends(e)[1]); }
   std::tuple<double, double, double, Holds> key(int e) const {
     const auto [ends, law, holds, stiff] = springs_[e];
