@@ -13,6 +13,7 @@
 #include "qddot/model/layout.hpp"
 #include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
+#include "qddot/model/split_network.hpp"
 #include "qddot/model/spring_lists.hpp"
 #include "qddot/model/stiffness_blocks.hpp"
 
@@ -23,56 +24,6 @@ using namespace kernels;
 
 // Measured: vectors sum forces faster than a loop over springs from this many nodes on.
 constexpr Index fewest_for_vectors = 16;
-
-// The network with only its stiff springs (`stiff`), or with all others: the halves of a Split.
-Network only(Network network, bool stiff) {
-  const auto is_other = [&](const auto& spring) { return spring.stiff != stiff; };
-  std::erase_if(network.links, is_other);
-  std::erase_if(network.image_links, is_other);
-  std::erase_if(network.anchors, is_other);
-  if (stiff) {
-    network.gravity.setZero();
-    network.load.resize(0);
-    network.constant_energy = 0;
-  }
-  network.offers_split = false;
-  return network;
-}
-
-// The nodes that have a spring, ascending.
-std::vector<int> pulled_nodes(const Network& network) {
-  std::vector<char> is_pulled(static_cast<std::size_t>(network.node_mass.size()));
-  for (const auto& link : network.links) is_pulled[link.i] = is_pulled[link.j] = 1;
-  for (const auto& link : network.image_links) is_pulled[link.i] = is_pulled[link.j] = 1;
-  for (const auto& anchor : network.anchors) is_pulled[anchor.i] = 1;
-  std::vector<int> nodes;
-  for (int i = 0; i < std::ssize(is_pulled); ++i) {
-    if (is_pulled[i]) nodes.push_back(i);
-  }
-  return nodes;
-}
-
-// The network of these nodes alone. All springs of `network` must join them, and it must have no
-// loads.
-Network among(const std::vector<int>& nodes, const Network& network) {
-  Network core = network;
-  core.node_mass = network.node_mass(nodes);
-  std::vector<int> place(static_cast<std::size_t>(network.node_mass.size()), -1);
-  core.zero_coordinates.clear();
-  for (int i = 0; i < std::ssize(nodes); ++i) {
-    place[nodes[i]] = i;
-    if (!network.zero_coordinates.empty()) {
-      core.zero_coordinates.push_back(network.zero_coordinates[nodes[i]]);
-    }
-  }
-  const auto renumber = [&](auto& links) {
-    for (auto& link : links) link.i = place[link.i], link.j = place[link.j];
-  };
-  renumber(core.links);
-  renumber(core.image_links);
-  for (auto& anchor : core.anchors) anchor.i = place[anchor.i];
-  return core;
-}
 
 template <int D>
 class MassSpring final : public CapableSystem {
@@ -266,11 +217,11 @@ class MassSpring final : public CapableSystem {
   }
 
   void offer_split(const Network& network, Forces forces) {
-    const Network stiff = only(network, true);
+    const Network stiff = half_of_split(network, true);
     const std::vector<int> nodes = pulled_nodes(stiff);
     split_ = {std::make_shared<MassSpring>(stiff, forces),
-              std::make_shared<MassSpring>(only(network, false), forces),
-              std::make_shared<MassSpring>(among(nodes, stiff), forces),
+              std::make_shared<MassSpring>(half_of_split(network, false), forces),
+              std::make_shared<MassSpring>(network_among(nodes, stiff), forces),
               {}};
     for (const int i : nodes) {
       for (int a = 0; a < layout_.count(i); ++a) {
