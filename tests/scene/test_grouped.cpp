@@ -5,7 +5,7 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include "qddot/scene/grouped.hpp"
+#include "qddot/model/grouped.hpp"
 #include "qddot/scene/reduce/springs.hpp"
 
 BOOST_AUTO_TEST_SUITE(grouped)

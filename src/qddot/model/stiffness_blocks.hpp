@@ -27,9 +27,7 @@ class StiffnessBlocks {
   // outlive it.
   StiffnessBlocks(const Network& network, const Layout<D>& layout, const Lists& springs)
       : layout_(layout), springs_(springs) {
-    BlockPattern<D> pattern(layout_);
-    for (const auto& link : network.links) pattern.join(link.i, link.j);
-    for (const auto& link : network.image_links) pattern.join(link.i, link.j);
+    const BlockPattern<D> pattern(network, layout_);
     pattern_ = pattern.make();
     const auto place_all = [&](const auto& links, std::vector<int>& places) {
       for (const auto& link : links) {

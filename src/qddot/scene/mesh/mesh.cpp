@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "qddot/scene/grouped.hpp"
+#include "qddot/model/grouped.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh_formats.hpp"
 #include "qddot/scene/mesh/weld.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "qddot/model/grouped.hpp"
 #include "qddot/model/large_pages.hpp"
-#include "qddot/scene/grouped.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 
 namespace qddot::reduce {

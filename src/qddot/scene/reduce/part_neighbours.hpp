@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "qddot/scene/grouped.hpp"
+#include "qddot/model/grouped.hpp"
 #include "qddot/scene/reduce/drawn_part.hpp"
 
 namespace qddot::reduce {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "qddot/scene/grouped.hpp"
+#include "qddot/model/grouped.hpp"
 
 namespace qddot::reduce {
 namespace {
