@@ -6,7 +6,6 @@
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
-#include "qddot/model/large_pages.hpp"
 
 namespace qddot {
 namespace {
@@ -38,13 +37,7 @@ double bound_by(const Vec& row_sums, const Vec& mass) {
 
 SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
   require_stiffness(system);
-  const SymmetricMatrix& pattern = system.stiffness_pattern();
-  SymmetricMatrix k(pattern.rows(), pattern.cols());
-  k.resizeNonZeros(pattern.nonZeros());
-  const auto entries = static_cast<std::size_t>(pattern.nonZeros());
-  ask_for_large_pages(k.valuePtr(), entries * sizeof(*k.valuePtr()));
-  ask_for_large_pages(k.innerIndexPtr(), entries * sizeof(*k.innerIndexPtr()));
-  k = pattern;
+  SymmetricMatrix k = system.stiffness_pattern();
   system.stiffness(q, k);
   return k;
 }

@@ -4,8 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "qddot/model/large_pages.hpp"
-
 namespace qddot {
 
 // Numbers 0 ... count - 1 in groups, by one counting sort: linear time, and one array for all. Each
@@ -18,12 +16,11 @@ class Grouped {
   // `group_of(k)`: the group of number k, from 0 to groups - 1, or none. It is called twice.
   template <class GroupOf>
   Grouped(int groups, int count, const GroupOf& group_of)
-      : begin_(filled_in_large_pages(static_cast<std::size_t>(groups) + 1, 0)) {
+      : begin_(static_cast<std::size_t>(groups) + 1, 0) {
     for (int k = 0; k < count; ++k) {
       if (const int group = group_of(k); group != none) ++begin_[at(group)];
     }
     std::exclusive_scan(begin_.begin(), begin_.end(), begin_.begin(), 0);
-    reserve_in_large_pages(numbers_, at(begin_.back()));
     numbers_.resize(at(begin_.back()));
     // Each begin moves to the group's end, where the next one begins, and back at last.
     for (int k = 0; k < count; ++k) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/reduce/pieces.hpp"
 #include "qddot/scene/reduce/start_check.hpp"
 
@@ -40,10 +39,7 @@ void expand_own(int dimension, const State& state, std::vector<Node>& nodes) {
 // Does Model::expand if `falls`, else expand_beside_falls. `nodes`: empty, or the result of an
 // earlier call.
 void expand_into(const Pieces& pieces, const State& state, bool falls, std::vector<Node>& nodes) {
-  if (nodes.empty()) {
-    reserve_in_large_pages(nodes, pieces.nodes.size());
-    nodes = pieces.nodes;
-  }
+  if (nodes.empty()) nodes = pieces.nodes;
   if (pieces.is_own) return expand_own(pieces.dimension, state, nodes);
   Index at = 0;
   for (const Part& part : pieces.parts) {

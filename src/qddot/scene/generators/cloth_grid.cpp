@@ -1,6 +1,5 @@
 #include "qddot/scene/generators/cloth_grid.hpp"
 
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/generators/ranges.hpp"
 
 namespace qddot {
@@ -28,8 +27,8 @@ Scene draw_cloth(const GeneratorValues& p) {
   const double spacing = p.at("side") / (count - 1);
   Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};
   const SceneSize size = cloth_size(p);
-  reserve_in_large_pages(scene.nodes, size.nodes);
-  reserve_in_large_pages(scene.springs, size.springs);
+  scene.nodes.reserve(size.nodes);
+  scene.springs.reserve(size.springs);
   const double mass = p.at("mass") / (count * count);
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
@@ -61,7 +60,7 @@ Scene draw_cloth(const GeneratorValues& p) {
     }
   }
   const auto cells = static_cast<std::size_t>(count - 1) * static_cast<std::size_t>(count - 1);
-  reserve_in_large_pages(scene.faces, 2 * cells);
+  scene.faces.reserve(2 * cells);
   for (int i = 0; i + 1 < count; ++i) {
     for (int j = 0; j + 1 < count; ++j) {
       scene.faces.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1)});

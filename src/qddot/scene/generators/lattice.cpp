@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/generators/ranges.hpp"
 
@@ -62,8 +61,8 @@ Generator lattice() {
             };
             Scene scene{.gravity = {0, 0, -p.at("gravity")}, .until = p.at("until")};
             const SceneSize size = size_of_lattice(p);
-            reserve_in_large_pages(scene.nodes, size.nodes);
-            reserve_in_large_pages(scene.springs, size.springs);
+            scene.nodes.reserve(size.nodes);
+            scene.springs.reserve(size.springs);
             for (int x = 0; x < nx; ++x) {
               for (int y = 0; y < ny; ++y) {
                 for (int z = 0; z < nz; ++z) {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/mesh/mesh_elements.hpp"
 #include "qddot/scene/mesh/mesh_formats.hpp"
 
@@ -76,10 +75,10 @@ void reserve(std::string_view text, Mesh& mesh) {
     faces += text.starts_with("f ") && end >= shortest_face;
     text.remove_prefix(end + 1);
   }
-  reserve_in_large_pages(mesh.vertices, vertices);
-  reserve_in_large_pages(mesh.triangles, faces);
-  reserve_in_large_pages(mesh.faces, faces);
-  reserve_in_large_pages(mesh.edges, 3 * faces);
+  mesh.vertices.reserve(vertices);
+  mesh.triangles.reserve(faces);
+  mesh.faces.reserve(faces);
+  mesh.edges.reserve(3 * faces);
   mesh.cells.reserve(faces, 3 * faces);
 }
 

@@ -10,7 +10,6 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <fmt/format.h>
 
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/lumped_mass.hpp"
 #include "qddot/scene/mesh/mesh.hpp"
@@ -212,8 +211,8 @@ void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const
   if (table.has("total_mass"))
     masses.assign(size.nodes,
                   table.number("total_mass", not_negative) / static_cast<double>(size.nodes));
-  reserve_in_large_pages(scene.nodes, size.nodes);
-  reserve_in_large_pages(scene.springs, size.springs);
+  scene.nodes.reserve(size.nodes);
+  scene.springs.reserve(size.springs);
   const Eigen::Vector3d velocity = table.vector_or_zero("velocity", 3);
   for (std::size_t i = 0; i < size.nodes; ++i)
     scene.nodes.push_back({.position = mesh.vertices[i], .velocity = velocity, .mass = masses[i]});

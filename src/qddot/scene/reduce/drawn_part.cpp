@@ -4,8 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "qddot/model/large_pages.hpp"
-
 namespace qddot::reduce {
 namespace {
 
@@ -62,7 +60,7 @@ PartSprings renumbered(const DrawnPart& drawn, std::vector<int> chosen,
     return nodes[node].pinned ? static_cast<int>(drawn.free) + pinned(node) : free(node);
   };
   std::vector<std::array<int, 2>> ends;
-  reserve_in_large_pages(ends, chosen.size());
+  ends.reserve(chosen.size());
   for (const int e : chosen) {
     const auto [a, b] = springs[static_cast<std::size_t>(e)].nodes;
     ends.push_back({number(a), number(b)});
@@ -88,8 +86,8 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
   pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
   drawn.nodes.insert(drawn.nodes.end(), pins.begin(), pins.end());
 
-  reserve_in_large_pages(drawn.x, drawn.nodes.size());
-  reserve_in_large_pages(drawn.mass, drawn.nodes.size());
+  drawn.x.reserve(drawn.nodes.size());
+  drawn.mass.reserve(drawn.nodes.size());
   double total_mass = 0;
   bool is_loaded = false, moves = false;
   for (const std::size_t i : drawn.nodes) {
@@ -101,7 +99,7 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
     total_mass += drawn.mass.back();
   }
   if (moves) {
-    reserve_in_large_pages(drawn.v, drawn.nodes.size());
+    drawn.v.reserve(drawn.nodes.size());
     for (const std::size_t i : drawn.nodes) {
       drawn.v.push_back(nodes[i].pinned ? Eigen::Vector3d::Zero() : nodes[i].velocity);
     }

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "qddot/model/grouped.hpp"
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 
 namespace qddot::reduce {
@@ -29,7 +28,7 @@ int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vect
 }
 
 std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedNodes& half) {
-  std::vector<ImageOf> images = filled_in_large_pages(half.y.size(), ImageOf{});
+  std::vector<ImageOf> images(half.y.size());
   for (int i = 0; i < std::ssize(images); ++i) {
     if (original_of(i, orbits, mirrors, half.y) != i) continue;
     const unsigned zero = half.on_planes[static_cast<std::size_t>(i)];
@@ -47,7 +46,7 @@ std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedNo
 FoldedNodes folded(const DrawnPart& drawn, const Mirrors& mirrors) {
   FoldedNodes half;
   const Orbits orbits(mirrors.images);
-  reserve_in_large_pages(half.y, drawn.nodes.size());
+  half.y.reserve(drawn.nodes.size());
   half.on_planes.reserve(drawn.nodes.size());
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     half.y.push_back(mirrors.frame.point(drawn.x[i]));
@@ -71,7 +70,7 @@ FoldedSprings::FoldedSprings(const DrawnPart& drawn, const FoldedNodes& half,
 // same lower end.
 void FoldedSprings::chain_images(double tolerance) {
   const auto springs = static_cast<std::size_t>(drawn_.springs.size());
-  next_ = filled_in_large_pages(springs, none);
+  next_.assign(springs, none);
   is_in_other_.assign(springs, false);
   const Grouped by_low(static_cast<int>(half_.y.size()), drawn_.springs.size(), [&](int e) {
     const auto [a, b] = drawn_.springs.ends(e);

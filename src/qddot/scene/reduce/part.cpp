@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "qddot/model/constrained_system.hpp"
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/reduce/folded_part.hpp"
 #include "qddot/scene/reduce/straight.hpp"
 
@@ -108,9 +107,9 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
   network.node_mass = Vec::Zero(count);
   network.load = Vec::Zero(axes * count);
   const Eigen::Vector3d g = mirrors_.frame.direction(drawn.gravity);
-  reserve_in_large_pages(nodes_, drawn.free);
-  reserve_in_large_pages(masses_, drawn.free);
-  reserve_in_large_pages(images_, drawn.free);
+  nodes_.reserve(drawn.free);
+  masses_.reserve(drawn.free);
+  images_.reserve(drawn.free);
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     const ImageOf image = half.images[i];
     const int number = numbers[static_cast<std::size_t>(image.original)];
@@ -134,7 +133,7 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
     images_.push_back({number, image.signs});
   }
   const FoldedSprings springs(drawn, half, mirrors_);
-  reserve_in_large_pages(network.links, springs.count());
+  network.links.reserve(springs.count());
   const bool may_fold = axes == 1 && dimension > 1;
   const std::vector<bool> joints = may_fold ? joints_of(drawn) : std::vector<bool>();
   springs.for_each([&](FoldedSpring spring) {

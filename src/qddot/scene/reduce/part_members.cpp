@@ -4,8 +4,6 @@
 
 #include <boost/pending/disjoint_sets.hpp>
 
-#include "qddot/model/large_pages.hpp"
-
 namespace qddot::reduce {
 
 std::vector<PartMembers> parts_of(const std::vector<Node>& nodes,
@@ -46,8 +44,8 @@ std::vector<PartMembers> parts_of(const std::vector<Node>& nodes,
   }
   std::vector<PartMembers> all(static_cast<std::size_t>(parts));
   for (std::size_t i = 0; i < all.size(); ++i) {
-    reserve_in_large_pages(all[i].nodes, nodes_of[i]);
-    reserve_in_large_pages(all[i].springs, springs_of[i]);
+    all[i].nodes.reserve(nodes_of[i]);
+    all[i].springs.reserve(springs_of[i]);
   }
   for (int i = 0; i < std::ssize(nodes); ++i) {
     if (const int part = part_of_node[static_cast<std::size_t>(i)]; part != none)

@@ -3,12 +3,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "qddot/model/large_pages.hpp"
-
 namespace qddot::reduce {
 
-Places::Places(const std::vector<Eigen::Vector3d>& x)
-    : x_(x), order_(filled_in_large_pages(x.size(), Entry{})) {
+Places::Places(const std::vector<Eigen::Vector3d>& x) : x_(x), order_(x.size()) {
   double high = -INFINITY;
   low_ = INFINITY;
   for (const Eigen::Vector3d& point : x) {
@@ -20,7 +17,7 @@ Places::Places(const std::vector<Eigen::Vector3d>& x)
   if (std::isfinite(fine)) buckets_a_metre_ = fine;  // else all are in the first bucket
 
   // A counting sort by buckets, then each bucket by key.
-  begin_ = filled_in_large_pages(static_cast<std::size_t>(last_bucket_) + 2, 0);
+  begin_.assign(static_cast<std::size_t>(last_bucket_) + 2, 0);
   for (const Eigen::Vector3d& point : x) ++begin_[bucket(key(point)) + 1];
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   std::vector<int> next(begin_.begin(), begin_.end() - 1);

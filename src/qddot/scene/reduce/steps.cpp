@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "qddot/model/block_diagonal_system.hpp"
-#include "qddot/model/large_pages.hpp"
 #include "qddot/scene/reduce/as_drawn.hpp"
 #include "qddot/scene/reduce/part_members.hpp"
 #include "qddot/scene/reduce/pieces.hpp"
@@ -60,13 +59,11 @@ class Steps {
   const Scene& scene_;
   const Reductions& reductions_;
   std::optional<std::vector<Spring>> changed_{};
-  Pieces pieces_{.dimension = scene_.dimension};
+  Pieces pieces_{.nodes = scene_.nodes, .dimension = scene_.dimension};
   std::size_t resting_ = 0;  // parts that rest in their fall
 };
 
 Pieces Steps::taken() {
-  reserve_in_large_pages(pieces_.nodes, scene_.nodes.size());
-  pieces_.nodes = scene_.nodes;
   for (Node& node : pieces_.nodes) {
     if (node.pinned) node.velocity.setZero();
   }
