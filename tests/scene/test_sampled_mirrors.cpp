@@ -1,6 +1,9 @@
 // Mirrors of parts that are large enough for a sample of nodes to be asked first.
+#include <cmath>
+
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/scene/reduce/part.hpp"
 #include "tests/scene/drawn.hpp"
 
 BOOST_AUTO_TEST_SUITE(sampled_mirrors)
