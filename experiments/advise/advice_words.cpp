@@ -30,7 +30,7 @@ std::string caller() {
 }  // namespace
 
 void print_scene(const Advices& all, const Subject& subject) {
-  fmt::print("{} to t = {:g} s, in {} and {} runs\n", in_one_line(subject.start.name),
+  fmt::print("{} to t = {:g} s, in {} and {} runs\n", in_one_line(subject.start().name),
              subject.until, time_in_words(all.seconds), all.runs);
   if (std::isfinite(all.largest_stable_step)) {
     fmt::print(
@@ -42,7 +42,7 @@ void print_scene(const Advices& all, const Subject& subject) {
     fmt::print("the motion's own frequency is {:.4g} rad/s, 1/{:.3g} of that\n", all.own_frequency,
                all.w_motion / all.own_frequency);
   }
-  const Explanation explanation = explain(subject.start, subject.model, at_a_glance);
+  const Explanation explanation = explain(subject.start(), subject.model, at_a_glance);
   if (explanation.unstable > 0) {
     fmt::print("compressed springs push to the side in {} directions{}\n", explanation.unstable,
                explanation.growth > 0 ? fmt::format(", as exp({:.3g} t)", explanation.growth) : "");

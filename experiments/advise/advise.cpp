@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
       csv.emplace(*out + "/advice.csv", advice_columns().header());
     }
     progress().stage("looking for the fastest methods");
-    const Advices all = advise(subject.model, subject.until, accuracies, bounded, &subject.start);
+    const Advices all = advise(subject.model, subject.until, accuracies, bounded, &subject.start());
     progress().wipe();
     print_scene(all, subject);
     print_advice(all, scene, subject.until);

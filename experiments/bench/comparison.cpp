@@ -9,6 +9,7 @@
 
 #include "experiments/kit/program.hpp"
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/settle.hpp"
 
 namespace qddot::bench {
 namespace {
@@ -105,7 +106,8 @@ void Comparison::measure(const std::vector<std::string>& methods, const std::vec
                          const Pace& pace, Study& study, const std::string& folder,
                          const nlohmann::json& origin) {
   progress().stage("making the reference");
-  const Problem problem(drawn, started(drawn, choice), until, folder, origin);
+  const Problem problem(drawn, settled_if_asked(drawn, choice.name).value_or(drawn), until, folder,
+                        origin);
   unknowns = problem.scene.system().size();
   fewest_unknowns = problem.smallest.system().size();
   const std::string prefix = fmt::format("{} {:.17g} ", content_hash(drawn), until);

@@ -29,7 +29,7 @@ void RatioRace::measure(Study& study, AtRatio& one, const std::string& folder,
   const Subject& s = one.subject;
   progress().stage(fmt::format("ratio {:g}: making the reference", one.ratio));
   try {
-    one.reference = reference_for(s.drawn, s.start, s.model, s.until, folder, origin, needed);
+    one.reference = reference_for(s.drawn, s.start(), s.model, s.until, folder, origin, needed);
     measure_methods(study, one);
   } catch (const NoReference& error) {
     say(fmt::format("crossover: ratio {:g}: {}; its cells are left empty", one.ratio,

@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     if (methods->empty()) {
       std::erase_if(selected, [](const Method* method) { return !method->stock_of.empty(); });
     }
-    const Momenta momenta(subject.start);
+    const Momenta momenta(subject.start());
     MotionScales scales{};
     std::vector<std::optional<DriftRun>> runs;
     const auto measure = [&](Study& study) {

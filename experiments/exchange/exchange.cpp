@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
     const auto selected = fixed_step_among(methods, subject);
     const Excitation excitation = [&] {
       Excitation e =
-          excitation_of(subject.start, std::move(subject.model), subject.until, subject.source);
+          excitation_of(subject.start(), std::move(subject.model), subject.until, subject.source);
       require_steps(h_omegas, e);
       if (every.is_given()) e.every = every;
       if (e.every <= e.until / 10) return e;

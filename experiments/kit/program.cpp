@@ -373,7 +373,7 @@ StudyCall Program::study_call() const {
 nlohmann::json Program::origin() const { return provenance(command_line_); }
 
 nlohmann::json Program::origin(const Subject& subject) const {
-  auto json = provenance(command_line_, subject.drawn, subject.start, subject.model);
+  auto json = provenance(command_line_, subject.drawn, subject.start(), subject.model);
   if (subject.until > 0) json["until"] = subject.until;
   return json;
 }

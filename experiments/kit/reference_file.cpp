@@ -268,7 +268,8 @@ void require_reference_exists(const Subject& subject) {
 
 Reference reference_for(const Subject& subject, const std::string& folder,
                         const nlohmann::json& origin) {
-  return reference_for(subject.drawn, subject.start, subject.model, subject.until, folder, origin);
+  return reference_for(subject.drawn, subject.start(), subject.model, subject.until, folder,
+                       origin);
 }
 
 Reference reference_for(const Scene& drawn, const Scene& start, const Model& scene, double until,

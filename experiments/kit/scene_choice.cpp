@@ -10,6 +10,7 @@
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/memory.hpp"
 #include "experiments/kit/program.hpp"
+#include "experiments/kit/progress.hpp"
 #include "experiments/kit/whole_file.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -17,15 +18,25 @@
 #include "qddot/scene/settle.hpp"
 
 namespace qddot::inline kit {
+namespace {
+
+// They are reduced in about a quarter of a second, and a text of that size is read in that time.
+constexpr std::size_t springs_that_take_a_while = 1'000'000, bytes_that_take_a_while = 20'000'000;
+
+}  // namespace
 
 Scene load(const SceneChoice& choice) {
   require_given(choice.name, "--scene", "a generator's name or a scene file");
   Scene scene = load_scene(choice.name,
                            [](const std::string& path) {
                              protect_input(path);
-                             return read_text(path);
+                             std::string text = read_text(path);
+                             if (text.size() >= bytes_that_take_a_while)
+                               progress().stage("reading " + path);
+                             return text;
                            },
                            {.bytes = free_memory()});
+  progress().wipe();
   scene.name = in_one_line(scene.name);  // it reaches terminals and tables
   for (const std::string& warning : scene.warnings) {
     fmt::print(stderr, "{}: warning: {}\n", program_invocation_short_name, in_one_line(warning));
@@ -33,9 +44,13 @@ Scene load(const SceneChoice& choice) {
   return scene;
 }
 
-Scene started(const Scene& drawn, const SceneChoice& choice) {
-  return drawn.starts_at_equilibrium ? settled(drawn, choice.name) : drawn;
+Reducing::Reducing(const Scene& scene) {
+  if (scene.springs.size() >= springs_that_take_a_while)
+    progress().stage(
+        fmt::format("reducing {} nodes and {} springs", scene.nodes.size(), scene.springs.size()));
 }
+
+Reducing::~Reducing() { progress().wipe(); }
 
 double end_time(double asked, bool is_asked, const Scene& scene) {
   if (is_asked) {
@@ -75,9 +90,11 @@ Subject subject_of(const SceneChoice& choice, double until) {
 }
 
 Subject subject_of(Scene drawn, const SceneChoice& choice, double until) {
-  Scene start = started(drawn, choice);
+  std::optional<Scene> settled = settled_if_asked(drawn, choice.name);
+  const Scene& start = settled ? *settled : drawn;
+  const Reducing reducing(start);
   Model model(start, reductions_of(choice));
-  return {choice.name, std::move(drawn), std::move(start), std::move(model), until};
+  return {choice.name, std::move(drawn), std::move(settled), std::move(model), until};
 }
 
 void require_fit(const Method& method, const Model& model, const std::string& source) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,14 @@ struct SceneChoice {
 // Throws InvalidInput if there is none or it is wrong.
 Scene load(const SceneChoice& choice);
 
-// The scene as its motion starts: at its equilibrium, if the scene says so. Throws InvalidInput if
-// it has none.
-Scene started(const Scene& drawn, const SceneChoice& choice);
+// Says that a scene is being reduced while this lives, where that takes a while.
+class Reducing {
+ public:
+  explicit Reducing(const Scene& scene);
+  ~Reducing();
+  Reducing(const Reducing&) = delete;
+  Reducing& operator=(const Reducing&) = delete;
+};
 
 // The end time [s]: the one the user asked for, else the scene's own. Throws InvalidInput if there
 // is neither or it is not positive.
@@ -36,9 +42,13 @@ Reductions reductions_of(const SceneChoice& choice);
 // A scene that a program works on.
 struct Subject {
   std::string source;  // as the user named it
-  Scene drawn, start;  // start: as its motion starts
-  Model model;         // of start
-  double until = 0;    // [s]; 0 if the program has times of its own
+  Scene drawn;
+  std::optional<Scene> settled;  // if its motion starts at its equilibrium
+  Model model;                   // of start()
+  double until = 0;              // [s]; 0 if the program has times of its own
+
+  // The scene as its motion starts.
+  const Scene& start() const { return settled ? *settled : drawn; }
 
   const System& system() const { return model.system(); }
   // The facts that decide a study of it: hash, name and time.

@@ -103,8 +103,8 @@ int main(int argc, char** argv) {
 
     const auto times = frame_times(
         study.until,
-        frames.is_given() ? *frames : usual_number_of_frames(subject.start.nodes.size()));
-    KeptMotions kept(p.folder(), subject.start, subject.model, times, origin);
+        frames.is_given() ? *frames : usual_number_of_frames(subject.start().nodes.size()));
+    KeptMotions kept(p.folder(), subject.start(), subject.model, times, origin);
     wait_for_answer(patience_with_a_run);
     std::optional<Interruption> why;
     try {

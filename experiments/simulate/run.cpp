@@ -23,6 +23,7 @@
 #include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/measure/stability/energy_loss.hpp"
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/settle.hpp"
 
 namespace qddot::simulate {
 namespace {
@@ -113,10 +114,10 @@ int answer(const Arguments& a) {
   const auto model = std::make_shared<const Model>(std::move(subject.model));
   const double until = subject.until;
 
-  Outputs output(a, every, subject.drawn, subject.start, *model, until);
+  Outputs output(a, every, subject.drawn, subject.start(), *model, until);
   wait_for_answer(patience_with_an_answer);
   progress().stage("looking for the fastest run");
-  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of}, &subject.start);
+  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of}, &subject.start());
   progress().wipe();
   const auto why = answer.is_reached ? std::nullopt : interrupted();
   if (!answer.method) {  // no run was begun
@@ -126,7 +127,7 @@ int answer(const Arguments& a) {
   if (output.is_asked_for()) {
     State end = answer.end;
     if (output.looks_on_the_way()) end = seen(answer, model, until, output);
-    nlohmann::json origin = provenance(a.p.command_line(), subject.drawn, subject.start, *model);
+    nlohmann::json origin = provenance(a.p.command_line(), subject.drawn, subject.start(), *model);
     origin["outcome"] = name(answer.summary.outcome);
     origin["t_reached"] = end.t;
     origin["energy_growth"] = answer.summary.energy_growth;
@@ -158,9 +159,12 @@ int run_method(const Arguments& a) {
   const Scene drawn = load(a.scene);
   const double until = end_time(a.until, a.until.is_given(), drawn);
   if (method.knob == Knob::step_size) require_step_size(a.step_size, "--step-size", until);
-  const Scene start = started(drawn, a.scene);
-  const auto model =
-      std::make_shared<const Model>(reduced_for(method, start, reductions_of(a.scene)));
+  const std::optional<Scene> settled = settled_if_asked(drawn, a.scene->name);
+  const Scene& start = settled ? *settled : drawn;
+  const auto model = [&] {
+    const Reducing reducing(start);
+    return std::make_shared<const Model>(reduced_for(method, start, reductions_of(a.scene)));
+  }();
   const Model& scene = *model;
   require_fit(method, scene, a.scene->name);
   Simulation run(model, method, options);

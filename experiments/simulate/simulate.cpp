@@ -90,7 +90,8 @@ int simulate(const Arguments& a) {
   }
   if (a.explain) {
     const Subject subject = subject_of(a.scene);
-    fmt::print("{}", explanation_in_words(explain(subject.start, subject.model), subject.start));
+    fmt::print("{}",
+               explanation_in_words(explain(subject.start(), subject.model), subject.start()));
     return done;
   }
   return a.accuracy.is_given() ? answer(a) : run_method(a);

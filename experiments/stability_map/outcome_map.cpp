@@ -128,7 +128,7 @@ std::vector<AmplitudeRow> rows_of(const Subject& subject, const Reductions& redu
   if (!is_varied && !rest) return {};
   const auto make = [&](double amplitude) {
     if (!is_varied) {
-      return row_of(amplitude, scaled(subject.start, *rest, amplitude), energy_at_rest(*rest),
+      return row_of(amplitude, scaled(subject.start(), *rest, amplitude), energy_at_rest(*rest),
                     reductions);
     }
     const Scene scene = drawn_with(subject.source, vary, amplitude);

@@ -35,7 +35,7 @@ void warn(const std::string& warning) { say("stability_map: warning: " + in_one_
 // The scene at rest, or nothing, with the reason, if it has no rest.
 std::optional<Scene> at_rest(const Subject& subject) {
   try {
-    return settled(subject.start, subject.source);
+    return settled(subject.start(), subject.source);
   } catch (const InvalidInput& why) {
     warn(fmt::format("{}; its modes are left out", why.what()));
     return {};

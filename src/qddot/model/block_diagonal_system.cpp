@@ -44,24 +44,48 @@ bool any_has(const std::vector<std::unique_ptr<System>>& blocks, Said (System::*
 }  // namespace
 
 BlockDiagonalSystem::BlockDiagonalSystem(std::vector<std::unique_ptr<System>> blocks)
-    : CapableSystem(all_masses(blocks)), blocks_(std::move(blocks)) {
-  if (!all_have(blocks_, &System::has_stiffness)) return;
-  pattern_.resize(size(), size());
+    : CapableSystem(all_masses(blocks)), blocks_(std::move(blocks)) {}
+
+bool BlockDiagonalSystem::has_stiffness() const {
+  return all_have(blocks_, &System::has_stiffness);
+}
+
+const SymmetricMatrix& BlockDiagonalSystem::stiffness_pattern() const {
+  std::call_once(pattern_made_, [&] {
+    if (has_stiffness()) pattern_ = joined_patterns();
+  });
+  return pattern_;
+}
+
+bool BlockDiagonalSystem::bound_row_sums(const ConstVec& q, Vec& sums) const {
+  sums.resize(size());
+  bool all = true;
+  Vec own_sums;
+  for_each(blocks_, VecView(q), [&](const System& block, const At& own, Index first) {
+    all = all && block.bound_row_sums(own.q, own_sums);
+    if (all) sums.segment(first, block.size()) = own_sums;
+  });
+  return all;
+}
+
+SymmetricMatrix BlockDiagonalSystem::joined_patterns() const {
+  SymmetricMatrix pattern(size(), size());
   Index nonzeros = 0;
   for (const auto& block : blocks_) nonzeros += block->stiffness_pattern().nonZeros();
-  pattern_.reserve(nonzeros);
+  pattern.reserve(nonzeros);
   Index at = 0;
   for (const auto& block : blocks_) {
     const SymmetricMatrix& own = block->stiffness_pattern();
     for (Index column = 0; column < own.cols(); ++column) {
-      pattern_.startVec(at + column);
+      pattern.startVec(at + column);
       for (SymmetricMatrix::InnerIterator entry(own, column); entry; ++entry) {
-        pattern_.insertBack(at + entry.row(), at + column) = 0;
+        pattern.insertBack(at + entry.row(), at + column) = 0;
       }
     }
     at += block->size();
   }
-  pattern_.finalize();
+  pattern.finalize();
+  return pattern;
 }
 
 const SplitStiffness* BlockDiagonalSystem::split_stiffness() const {

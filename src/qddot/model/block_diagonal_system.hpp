@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mutex>
 #include <vector>
 
 #include "qddot/model/capabilities.hpp"
@@ -23,7 +24,9 @@ class BlockDiagonalSystem final : public CapableSystem {
   bool is_conservative() const override;
   bool is_autonomous() const override;
   void stiffness(const At& at, SymmetricMatrix& k) const override;
-  const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
+  const SymmetricMatrix& stiffness_pattern() const override;
+  bool has_stiffness() const override;
+  bool bound_row_sums(const ConstVec& q, Vec& sums) const override;
   bool stiffness_is_constant() const override;
 
   const SplitStiffness* split_stiffness() const override;
@@ -52,8 +55,12 @@ class BlockDiagonalSystem final : public CapableSystem {
   template <class Evaluate>
   void assemble(const At& at, SymmetricMatrix& k, const Evaluate& evaluate) const;
 
+  SymmetricMatrix joined_patterns() const;
+
   std::vector<std::unique_ptr<System>> blocks_;
-  SymmetricMatrix pattern_;
+  // Made when somebody first asks for it, by any thread.
+  mutable std::once_flag pattern_made_;
+  mutable SymmetricMatrix pattern_;
 };
 
 }  // namespace qddot

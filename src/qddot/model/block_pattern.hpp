@@ -1,9 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <vector>
 
+#include "qddot/model/grouped.hpp"
 #include "qddot/model/layout.hpp"
+#include "qddot/model/mass_spring.hpp"
 
 namespace qddot {
 
@@ -14,38 +18,57 @@ namespace qddot {
 template <int D>
 class BlockPattern {
  public:
-  explicit BlockPattern(const Layout<D>& layout) : layout_(layout), below_(layout.nodes()) {}
-
-  // Says that K has a block for nodes i and j; i = j has one anyway.
-  void join(int i, int j) {
-    if (i != j) below_[std::min(i, j)].push_back({std::max(i, j), 0});
+  // K has a block for each node, and for the two nodes of each link and image link.
+  BlockPattern(const Network& network, const Layout<D>& layout) : layout_(layout) {
+    const auto links = static_cast<int>(network.links.size());
+    const auto pair = [&](int k) {
+      if (k < links) {
+        const auto& link = network.links[static_cast<std::size_t>(k)];
+        return std::array{std::min(link.i, link.j), std::max(link.i, link.j)};
+      }
+      const auto& link = network.image_links[static_cast<std::size_t>(k - links)];
+      return std::array{std::min(link.i, link.j), std::max(link.i, link.j)};
+    };
+    const auto nodes = static_cast<int>(layout_.nodes());
+    const Grouped by_low(nodes, links + static_cast<int>(network.image_links.size()), [&](int k) {
+      const auto [low, high] = pair(k);
+      return low == high ? Grouped::none : low;
+    });
+    std::vector<int> highs;
+    for (int node = 0; node < nodes; ++node) {
+      begin_.push_back(below_.size());
+      highs.clear();
+      for (const int k : by_low[node]) highs.push_back(pair(k)[1]);
+      std::ranges::sort(highs);
+      highs.erase(std::unique(highs.begin(), highs.end()), highs.end());
+      int rows = 0;
+      for (const int high : highs) {
+        below_.push_back({high, rows});
+        rows += layout_.count(high);
+      }
+    }
+    begin_.push_back(below_.size());
   }
 
-  // The pattern with zero values. Call once, after all joins.
-  SymmetricMatrix make() {
-    const Index n = layout_.first(static_cast<int>(layout_.nodes()));
+  // The pattern with zero values.
+  SymmetricMatrix make() const {
+    const auto nodes = static_cast<int>(layout_.nodes());
+    const Index n = layout_.first(nodes);
     Index nonzeros = 0;
-    for (int node = 0; node < layout_.nodes(); ++node) {
-      auto& list = below_[node];
-      std::ranges::sort(list, {}, &Neighbour::node);
-      const auto same = [](const Neighbour& a, const Neighbour& b) { return a.node == b.node; };
-      list.erase(std::unique(list.begin(), list.end(), same), list.end());
-      int rows = 0;
-      for (Neighbour& neighbour : list) {
-        neighbour.rows_before = rows;
-        rows += layout_.count(neighbour.node);
-      }
+    for (int node = 0; node < nodes; ++node) {
       const int count = layout_.count(node);
-      nonzeros += count * (count + 1) / 2 + count * rows;
+      nonzeros += count * (count + 1) / 2;
+      for (const Neighbour& neighbour : below(node))
+        nonzeros += count * layout_.count(neighbour.node);
     }
     SymmetricMatrix pattern(n, n);
     pattern.reserve(nonzeros);
-    for (int node = 0; node < layout_.nodes(); ++node) {
+    for (int node = 0; node < nodes; ++node) {
       const int end = layout_.first(node + 1);
       for (int column = layout_.first(node); column < end; ++column) {
         pattern.startVec(column);
         for (int row = column; row < end; ++row) pattern.insertBack(row, column) = 0;
-        for (const Neighbour& neighbour : below_[node]) {
+        for (const Neighbour& neighbour : below(node)) {
           const int last = layout_.first(neighbour.node + 1);
           for (int row = layout_.first(neighbour.node); row < last; ++row) {
             pattern.insertBack(row, column) = 0;
@@ -57,12 +80,12 @@ class BlockPattern {
     return pattern;
   }
 
-  // The number of rows between node min(i, j)'s own block and the block of i and j, which must be
-  // joined. Valid after make().
+  // The number of rows between node min(i, j)'s own block and the block of i and j, which must have
+  // one.
   int place(int i, int j) const {
     if (i == j) return 0;
-    const auto& list = below_[std::min(i, j)];
-    return std::ranges::lower_bound(list, std::max(i, j), {}, &Neighbour::node)->rows_before;
+    return std::ranges::lower_bound(below(std::min(i, j)), std::max(i, j), {}, &Neighbour::node)
+        ->rows_before;
   }
 
  private:
@@ -70,8 +93,15 @@ class BlockPattern {
     int node, rows_before;
   };
 
+  // The neighbours i > j of node j, ascending.
+  std::span<const Neighbour> below(int node) const {
+    const auto own = static_cast<std::size_t>(node);
+    return std::span(below_).subspan(begin_[own], begin_[own + 1] - begin_[own]);
+  }
+
   const Layout<D>& layout_;
-  std::vector<std::vector<Neighbour>> below_;  // the neighbours i > j of each node j
+  std::vector<std::size_t> begin_;  // of each node in below_, and the end
+  std::vector<Neighbour> below_;
 };
 
 }  // namespace qddot

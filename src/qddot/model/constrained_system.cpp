@@ -11,21 +11,16 @@ ConstrainedSystem::ConstrainedSystem(std::shared_ptr<const System> system,
       laplacian_(system_->laplacian()),
       pieces_(system_->pieces()),
       validity_(system_->validity()),
-      kinks_(system_->kinks()) {
+      kinks_(system_->kinks()),
+      is_held_(std::move(is_held)) {
   for (Index i = 0; i < size(); ++i) {
-    if (is_held[i]) unknowns_.push_back(i);
-  }
-  Index entry = 0;
-  for (Index column = 0; column < stiffness_pattern().cols(); ++column) {
-    for (SymmetricMatrix::InnerIterator at(stiffness_pattern(), column); at; ++at, ++entry) {
-      if (is_held[column] || is_held[at.row()]) entries_.push_back(entry);
-    }
+    if (is_held_[i]) unknowns_.push_back(i);
   }
   if (const Split* split = system_->split()) {
     std::vector<bool> is_held_in_block;
-    for (const Index i : split->stiff_unknowns) is_held_in_block.push_back(is_held[i]);
-    split_ = {std::make_shared<ConstrainedSystem>(split->stiff, is_held),
-              std::make_shared<ConstrainedSystem>(split->soft, is_held),
+    for (const Index i : split->stiff_unknowns) is_held_in_block.push_back(is_held_[i]);
+    split_ = {std::make_shared<ConstrainedSystem>(split->stiff, is_held_),
+              std::make_shared<ConstrainedSystem>(split->soft, is_held_),
               std::make_shared<ConstrainedSystem>(split->stiff_block, is_held_in_block),
               split->stiff_unknowns};
   }
@@ -63,6 +58,14 @@ void ConstrainedSystem::assemble_laplacian(SymmetricMatrix& l) const {
 }
 
 void ConstrainedSystem::clear_held(SymmetricMatrix& k) const {
+  std::call_once(entries_found_, [&] {
+    Index entry = 0;
+    for (Index column = 0; column < k.cols(); ++column) {
+      for (SymmetricMatrix::InnerIterator at(k, column); at; ++at, ++entry) {
+        if (is_held_[column] || is_held_[at.row()]) entries_.push_back(entry);
+      }
+    }
+  });
   for (const Index entry : entries_) k.valuePtr()[entry] = 0;
 }
 

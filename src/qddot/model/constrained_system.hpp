@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,10 @@ class ConstrainedSystem final : public CapableSystem {
   bool is_autonomous() const override { return system_->is_autonomous(); }
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
+  bool has_stiffness() const override { return system_->has_stiffness(); }
+  bool bound_row_sums(const ConstVec& q, Vec& sums) const override {
+    return system_->bound_row_sums(q, sums);
+  }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
 
   const SplitStiffness* split_stiffness() const override {
@@ -65,9 +70,13 @@ class ConstrainedSystem final : public CapableSystem {
   const PiecewiseLinear* pieces_;
   const Validity* validity_;
   const Kinks* kinks_;
+  std::vector<bool> is_held_;
   std::vector<Index> unknowns_;  // the held ones
-  std::vector<Index> entries_;   // of the pattern, in a row or column of a held unknown
   std::optional<Split> split_;   // of the system, held likewise
+  // The entries of the pattern in a row or column of a held unknown; found with the first K, by any
+  // thread.
+  mutable std::once_flag entries_found_;
+  mutable std::vector<Index> entries_;
 };
 
 }  // namespace qddot

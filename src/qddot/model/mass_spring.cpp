@@ -1,6 +1,8 @@
 #include "qddot/model/mass_spring.hpp"
 
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <stdexcept>
 
 #include "qddot/model/capabilities.hpp"
@@ -11,7 +13,9 @@
 #include "qddot/model/layout.hpp"
 #include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
+#include "qddot/model/split_network.hpp"
 #include "qddot/model/spring_lists.hpp"
+#include "qddot/model/stiffness_blocks.hpp"
 
 namespace qddot {
 namespace {
@@ -21,77 +25,29 @@ using namespace kernels;
 // Measured: vectors sum forces faster than a loop over springs from this many nodes on.
 constexpr Index fewest_for_vectors = 16;
 
-// The network with only its stiff springs (`stiff`), or with all others: the halves of a Split.
-Network only(Network network, bool stiff) {
-  const auto is_other = [&](const auto& spring) { return spring.stiff != stiff; };
-  std::erase_if(network.links, is_other);
-  std::erase_if(network.image_links, is_other);
-  std::erase_if(network.anchors, is_other);
-  if (stiff) {
-    network.gravity.setZero();
-    network.load.resize(0);
-    network.constant_energy = 0;
-  }
-  network.offers_split = false;
-  return network;
-}
-
-// The nodes that have a spring, ascending.
-std::vector<int> pulled_nodes(const Network& network) {
-  std::vector<char> is_pulled(static_cast<std::size_t>(network.node_mass.size()));
-  for (const auto& link : network.links) is_pulled[link.i] = is_pulled[link.j] = 1;
-  for (const auto& link : network.image_links) is_pulled[link.i] = is_pulled[link.j] = 1;
-  for (const auto& anchor : network.anchors) is_pulled[anchor.i] = 1;
-  std::vector<int> nodes;
-  for (int i = 0; i < std::ssize(is_pulled); ++i) {
-    if (is_pulled[i]) nodes.push_back(i);
-  }
-  return nodes;
-}
-
-// The network of these nodes alone. All springs of `network` must join them, and it must have no
-// loads.
-Network among(const std::vector<int>& nodes, const Network& network) {
-  Network core = network;
-  core.node_mass = network.node_mass(nodes);
-  std::vector<int> place(static_cast<std::size_t>(network.node_mass.size()), -1);
-  core.zero_coordinates.clear();
-  for (int i = 0; i < std::ssize(nodes); ++i) {
-    place[nodes[i]] = i;
-    if (!network.zero_coordinates.empty()) {
-      core.zero_coordinates.push_back(network.zero_coordinates[nodes[i]]);
-    }
-  }
-  const auto renumber = [&](auto& links) {
-    for (auto& link : links) link.i = place[link.i], link.j = place[link.j];
-  };
-  renumber(core.links);
-  renumber(core.image_links);
-  for (auto& anchor : core.anchors) anchor.i = place[anchor.i];
-  return core;
-}
-
 template <int D>
 class MassSpring final : public CapableSystem {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
 
  public:
-  MassSpring(const Network& network, Forces forces)
-      : MassSpring(network, forces, {network.node_mass.size(), network.zero_coordinates}) {}
+  MassSpring(Network network, Forces forces)
+      : MassSpring(std::move(network), forces,
+                   Layout<D>(network.node_mass.size(), network.zero_coordinates)) {}
 
   double potential(const At& at) const override {
     const VecView& q = at.q;
     double v = constant_energy_ - weight_.dot(q);
     if (by_node_) {
       v += by_node_->half_sum_energies(q);
-      springs_.for_each_anchor([&](const auto& spring) {
-        v += spring_energy(spring.law, springs_.between(q, spring)) / 2;
+      for_each_anchor([&](const Network::Anchor& anchor) {
+        const Point d = anchor.point.template head<D>() - layout_.at(q, anchor.i);
+        v += spring_energy(anchor.law, d) / 2;
       });
       return v;
     }
-    springs_.for_each(
-        [&](const auto& spring) { v += spring_energy(spring.law, springs_.between(q, spring)); });
+    springs_->for_each(
+        [&](const auto& spring) { v += spring_energy(spring.law, springs_->between(q, spring)); });
     return v;
   }
 
@@ -99,8 +55,8 @@ class MassSpring final : public CapableSystem {
     const VecView& q = at.q;
     if (by_node_) return by_node_->sum_forces(q, f);
     f = weight_;
-    springs_.add_forces(
-        [&](const auto& spring) { return spring_force(spring.law, springs_.between(q, spring)); },
+    springs_->add_forces(
+        [&](const auto& spring) { return spring_force(spring.law, springs_->between(q, spring)); },
         f);
   }
 
@@ -108,10 +64,10 @@ class MassSpring final : public CapableSystem {
     const VecView &a = start.q, &b = end.q;
     if (by_node_) return by_node_->sum_mean_forces(a, b, f);
     f = weight_;
-    springs_.add_forces(
+    springs_->add_forces(
         [&](const auto& spring) {
-          return spring_discrete_gradient(spring.law, springs_.between(a, spring),
-                                          springs_.between(b, spring));
+          return spring_discrete_gradient(spring.law, springs_->between(a, spring),
+                                          springs_->between(b, spring));
         },
         f);
   }
@@ -124,9 +80,10 @@ class MassSpring final : public CapableSystem {
     const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
     };
-    if (!by_node_) return springs_.assemble(q, k, block);
-    columns_->stiffness(*by_node_, q, compression_weight, k);
-    add_left_out(q, k, block);
+    const ForStiffness& own = for_stiffness();
+    if (!by_node_) return own.blocks.assemble(q, k, block);
+    own.columns->stiffness(*by_node_, q, compression_weight, k);
+    add_left_out(own, q, k, block);
   }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override {
@@ -134,13 +91,38 @@ class MassSpring final : public CapableSystem {
     const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
     };
-    if (!by_node_) return springs_.assemble(q, k, block);
-    columns_->material_stiffness(*by_node_, q, k);
-    add_left_out(q, k, block);
+    const ForStiffness& own = for_stiffness();
+    if (!by_node_) return own.blocks.assemble(q, k, block);
+    own.columns->material_stiffness(*by_node_, q, k);
+    add_left_out(own, q, k, block);
   }
 
-  const SymmetricMatrix& stiffness_pattern() const override { return springs_.pattern(); }
+  const SymmetricMatrix& stiffness_pattern() const override {
+    return for_stiffness().blocks.pattern();
+  }
+  bool has_stiffness() const override { return true; }
   bool stiffness_is_constant() const override { return linear_; }
+  // The blocks of springs are added by their absolute values: |sum B| <= sum |B|.
+  bool bound_row_sums(const ConstVec& at, Vec& sums) const override {
+    const std::shared_lock lock(links_in_use_);
+    if (links_are_in_lists_) return false;  // K is made already
+    const VecView q = at;
+    sums.setZero(size());
+    const auto add = [&](const auto& spring, const Point& d, int node, double times) {
+      const Point rows = times * spring_stiffness(spring.law, d).cwiseAbs().rowwise().sum();
+      layout_.add(rows, node, sums);
+    };
+    const auto add_link = [&](const auto& link, const Point& mirror) {
+      const Point d = mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
+      // In its own block and in that with the other end.
+      for (const int node : {link.i, link.j}) add(link, d, node, 2);
+    };
+    for (const auto& link : network_.links) add_link(link, Point::Ones());
+    for (const auto& link : network_.image_links) add_link(link, link.mirror.template head<D>());
+    for (const auto& anchor : network_.anchors)
+      add(anchor, anchor.point.template head<D>() - layout_.at(q, anchor.i), anchor.i, 1);
+    return true;
+  }
 
   const SplitStiffness* split_stiffness() const override { return this; }
   const DiscreteGradient* discrete_gradient() const override { return this; }
@@ -156,9 +138,10 @@ class MassSpring final : public CapableSystem {
     const VecView q = at;
     const signed char* direction = directions_.data();
     bool all = true;
-    springs_.for_each([&](const auto& spring) {
+    const SpringLists<D>& springs = lists();
+    springs.for_each([&](const auto& spring) {
       const int own = *direction++;
-      all = all & (own == 0 || own * springs_.between(q, spring)[0] > 0);
+      all = all & (own == 0 || own * springs.between(q, spring)[0] > 0);
     });
     return all;
   }
@@ -166,9 +149,10 @@ class MassSpring final : public CapableSystem {
   bool bounds_stiffness() const override { return !has_quartic_; }
   // A network with rest lengths of zero has the same stiffness at every q.
   void assemble_laplacian(SymmetricMatrix& l) const override {
-    springs_.assemble(Vec(Vec::Zero(size())), l, [](const SpringLaw& law, const Point&) -> Block {
-      return -law.stiffness * Block::Identity();
-    });
+    for_stiffness().blocks.assemble(Vec(Vec::Zero(size())), l,
+                                    [](const SpringLaw& law, const Point&) -> Block {
+                                      return -law.stiffness * Block::Identity();
+                                    });
   }
 
   // A length of zero is a kink only on a line.
@@ -176,8 +160,9 @@ class MassSpring final : public CapableSystem {
   void kink_lengths(const ConstVec& at, MutableVec lengths) const override {
     const VecView q = at;
     Index i = 0;
-    springs_.for_each([&](const auto& spring) {
-      if (turns_over(spring.law)) lengths[i++] = springs_.between(q, spring)[0];
+    const SpringLists<D>& springs = lists();
+    springs.for_each([&](const auto& spring) {
+      if (turns_over(spring.law)) lengths[i++] = springs.between(q, spring)[0];
     });
   }
 
@@ -190,38 +175,91 @@ class MassSpring final : public CapableSystem {
   }
 
  private:
-  MassSpring(const Network& network, Forces forces, const Layout<D>& layout)
+  // All that K is made of.
+  struct ForStiffness {
+    StiffnessBlocks<D> blocks;
+    std::optional<StiffnessKernel<D>> columns;  // beside SpringsByNode
+  };
+
+  MassSpring(Network&& network, Forces forces, Layout<D> layout)
       : CapableSystem(masses(network, layout)),
-        layout_(layout),
-        springs_(network, layout_),
-        weight_(weights(network, layout)),
+        layout_(std::move(layout)),
+        weight_(weights(network, layout_)),
         constant_energy_(network.constant_energy) {
     note_tension(network);
     directions_ = directions(network, layout_);
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       by_node_.emplace(network, layout_, weight_);
-      columns_.emplace(network, layout_, *by_node_, springs_.pattern());
+    } else {
+      springs_.emplace(network, layout_);
     }
+    note_laws(network);
+    if (network.offers_split) offer_split(network, forces);
+    network_ = {.dimension = D,
+                .links = std::move(network.links),
+                .anchors = std::move(network.anchors),
+                .image_links = std::move(network.image_links)};
+  }
+
+  void note_laws(const Network& network) {
     linear_ = network.uses_constant_stiffness;
-    springs_.for_each([&](const auto& spring) {
-      linear_ &= spring.law.is_linear() || keeps_directions();
-      if (spring.law.quartic > 0) has_quartic_ = true;
-      kinks_ += turns_over(spring.law);
-    });
-    if (network.offers_split) {
-      const Network stiff = only(network, true);
-      const std::vector<int> nodes = pulled_nodes(stiff);
-      split_ = {std::make_shared<MassSpring>(stiff, forces),
-                std::make_shared<MassSpring>(only(network, false), forces),
-                std::make_shared<MassSpring>(among(nodes, stiff), forces),
-                {}};
-      for (const int i : nodes) {
-        for (int a = 0; a < layout.count(i); ++a) {
-          split_->stiff_unknowns.push_back(layout.first(i) + a);
-        }
+    const auto note = [&](const auto& springs) {
+      for (const auto& spring : springs) {
+        linear_ = linear_ && (spring.law.is_linear() || keeps_directions());
+        if (spring.law.quartic > 0) has_quartic_ = true;
+        kinks_ += turns_over(spring.law);
+      }
+    };
+    note(network.links);
+    note(network.image_links);
+    note(network.anchors);
+  }
+
+  void offer_split(const Network& network, Forces forces) {
+    const Network stiff = half_of_split(network, true);
+    const std::vector<int> nodes = pulled_nodes(stiff);
+    split_ = {std::make_shared<MassSpring>(stiff, forces),
+              std::make_shared<MassSpring>(half_of_split(network, false), forces),
+              std::make_shared<MassSpring>(network_among(nodes, stiff), forces),
+              {}};
+    for (const int i : nodes) {
+      for (int a = 0; a < layout_.count(i); ++a) {
+        split_->stiff_unknowns.push_back(layout_.first(i) + a);
       }
     }
+  }
+
+  // Calls see(anchor) for each spring to a fixed point, in the lists' order.
+  template <class See>
+  void for_each_anchor(const See& see) const {
+    for (const bool full : {true, false}) {
+      for (const Network::Anchor& anchor : network_.anchors) {
+        if (layout_.is_full(anchor.i) == full) see(anchor);
+      }
+    }
+  }
+
+  // The lists, and all that K is made of, are made when somebody first asks for them: explicit runs
+  // of many nodes never do. Any thread may ask.
+  const SpringLists<D>& lists() const {
+    std::call_once(lists_made_, [&] {
+      if (!springs_) springs_.emplace(network_, layout_);
+    });
+    return *springs_;
+  }
+  const ForStiffness& for_stiffness() const {
+    std::call_once(for_stiffness_made_, [&] {
+      ForStiffness& own =
+          for_stiffness_.emplace(ForStiffness{{network_, layout_, lists()}, std::nullopt});
+      if (by_node_) own.columns.emplace(network_, layout_, *by_node_, own.blocks.pattern());
+      // The lists hold the same springs.
+      const std::unique_lock lock(links_in_use_);
+      links_are_in_lists_ = true;
+      network_.links = {};
+      network_.image_links = {};
+    });
+    return *for_stiffness_;
   }
 
   bool keeps_directions() const { return !directions_.empty(); }
@@ -253,13 +291,13 @@ class MassSpring final : public CapableSystem {
 
   // Adds the springs that the kernel of K leaves out.
   template <class BlockOf>
-  void add_left_out(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
-    for (const int e : columns_->links_left_out()) springs_.add_link_block(q, k, block, e);
-    springs_.add_image_blocks(q, k, block);
+  static void add_left_out(const ForStiffness& own, const VecView& q, SymmetricMatrix& k,
+                           const BlockOf& block) {
+    for (const int e : own.columns->links_left_out()) own.blocks.add_link_block(q, k, block, e);
+    own.blocks.add_image_blocks(q, k, block);
   }
 
   Layout<D> layout_;
-  SpringLists<D> springs_;
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
@@ -268,16 +306,22 @@ class MassSpring final : public CapableSystem {
   Index kinks_ = 0;
   bool has_quartic_ = false;
   std::optional<SpringsByNode<D>> by_node_;
-  std::optional<StiffnessKernel<D>> columns_;
   std::optional<Split> split_;
+  // The springs that lists and K are made of, its links only until then.
+  mutable Network network_;
+  mutable bool links_are_in_lists_ = false;
+  mutable std::shared_mutex links_in_use_;  // of the two above
+  mutable std::once_flag lists_made_, for_stiffness_made_;
+  mutable std::optional<SpringLists<D>> springs_;  // from the start without by_node_
+  mutable std::optional<ForStiffness> for_stiffness_;
 };
 
 }  // namespace
 
-std::unique_ptr<System> make_mass_spring(const Network& network, Forces forces) {
-  if (network.dimension == 1) return std::make_unique<MassSpring<1>>(network, forces);
-  if (network.dimension == 2) return std::make_unique<MassSpring<2>>(network, forces);
-  if (network.dimension == 3) return std::make_unique<MassSpring<3>>(network, forces);
+std::unique_ptr<System> make_mass_spring(Network network, Forces forces) {
+  if (network.dimension == 1) return std::make_unique<MassSpring<1>>(std::move(network), forces);
+  if (network.dimension == 2) return std::make_unique<MassSpring<2>>(std::move(network), forces);
+  if (network.dimension == 3) return std::make_unique<MassSpring<3>>(std::move(network), forces);
   throw std::invalid_argument("a network has 1, 2 or 3 dimensions");
 }
 

@@ -68,7 +68,10 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 // nodes that a link joins. It is constant if every law is linear or every spring has a direction.
 // Throws std::invalid_argument for directions in two or three dimensions or beside a quartic term.
 // It does so too if some springs with a rest length have one and others have none.
-std::unique_ptr<System> make_mass_spring(const Network& network,
+//
+// K's pattern, and what K is summed from, are made when somebody first asks for K, by any thread.
+// So the first such question takes longer than the later ones.
+std::unique_ptr<System> make_mass_spring(Network network,
                                          Forces forces = Forces::whichever_is_faster);
 
 }  // namespace qddot

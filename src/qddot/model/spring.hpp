@@ -46,7 +46,7 @@ struct SpringLaw {
 // The validity of a spring's law: always, or in tension only, l >= l0. The second is for a spring
 // that replaces several in series through massless nodes. They fold up in compression, where this
 // one would push.
-enum class Holds { always, in_tension };
+enum class Holds : unsigned char { always, in_tension };
 
 // Functions of one spring between x_i and x_j in D = 1, 2 or 3 dimensions: d = x_j - x_i [m],
 // l = |d|, n = d/l. Real is double, or std::complex<double> for complex-step differentiation.

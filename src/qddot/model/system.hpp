@@ -112,14 +112,17 @@ class System {
   // Whether f, V and K do not depend on t.
   virtual bool is_autonomous() const { return true; }
 
-  // The n x n pattern of K, the same everywhere, with zero values. It is made once and copied by
-  // each user. It is 0 x 0 if the system computes no K.
+  // The n x n pattern of K, the same everywhere, with zero values. It is made once, at the latest
+  // by the first call, and copied by each user. It is 0 x 0 if the system computes no K.
   virtual const SymmetricMatrix& stiffness_pattern() const;
-  // Whether the system computes K.
-  bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
+  // Whether the system computes K. A system that makes its pattern late answers without it.
+  virtual bool has_stiffness() const { return stiffness_pattern().cols() == size(); }
   // Writes K = df/dq [N/m] into `k`, which must have the pattern stiffness_pattern(). Throws
   // std::logic_error if the system computes no K.
   virtual void stiffness(const At& at, SymmetricMatrix& k) const;
+  // Writes bounds of the sums of |K_ij| over each row i at q [N/m], found without K, into `sums`
+  // (n) and returns true. Returns false if the system has none, or none that is cheaper than its K.
+  virtual bool bound_row_sums(const ConstVec&, Vec& /*sums*/) const { return false; }
   // Whether K is the same at every q of the motion, so that the motion is linear.
   virtual bool stiffness_is_constant() const { return false; }
 

@@ -47,4 +47,9 @@ Scene settled(const Scene& scene, const std::string& source) {
   return result;
 }
 
+std::optional<Scene> settled_if_asked(const Scene& scene, const std::string& source) {
+  if (!scene.starts_at_equilibrium) return {};
+  return settled(scene, source);
+}
+
 }  // namespace qddot

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "qddot/analysis/equilibrium.hpp"
@@ -18,5 +19,9 @@ Equilibrium equilibrium_of(const Model& scene);
 // start there. Throws InvalidInput if there is no equilibrium or none is reached. The sentence
 // starts with `source`.
 Scene settled(const Scene& scene, const std::string& source);
+
+// The scene settled, if it asks to start at its equilibrium; nothing if it starts as drawn. Throws
+// as settled does.
+std::optional<Scene> settled_if_asked(const Scene& scene, const std::string& source);
 
 }  // namespace qddot

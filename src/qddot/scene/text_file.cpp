@@ -27,6 +27,9 @@ std::string read_text(const std::string& path) {
   if (!in) refuse(fmt::format("the file cannot be opened ({})", std::strerror(errno)));
 
   std::string text;
+  // The file may still grow.
+  if (const auto size = std::filesystem::file_size(path, ignored); !ignored && size <= most_bytes)
+    text.reserve(size);
   std::array<char, 65536> block;
   while (in.read(block.data(), block.size()), in.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(in.gcount()));

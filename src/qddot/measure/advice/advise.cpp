@@ -141,7 +141,8 @@ Advices advise(const Model& model, double until, const std::vector<double>& accu
 
 Advices advise(const Scene& scene, double until, const std::vector<double>& accuracies,
                AccuracyOf of) {
-  const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
+  const std::optional<Scene> settled = settled_if_asked(scene, scene.name);
+  const Scene& start = settled ? *settled : scene;
   return advise(Model(start), until, accuracies, of, &start);
 }
 

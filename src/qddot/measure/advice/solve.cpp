@@ -152,7 +152,8 @@ Answer solve(const Model& model, double until, const Wanted& wanted, const Scene
 }
 
 Answer solve(const Scene& scene, double until, const Wanted& wanted) {
-  const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
+  const std::optional<Scene> settled = settled_if_asked(scene, scene.name);
+  const Scene& start = settled ? *settled : scene;
   return solve(Model(start), until, wanted, &start);
 }
 

@@ -24,7 +24,8 @@ const Method& method(std::string_view name) {
 }
 
 Model reduced_for(const Method& method, const Scene& scene, const Reductions& reductions) {
-  const Scene start = scene.starts_at_equilibrium ? settled(scene, scene.name) : scene;
+  const std::optional<Scene> settled = settled_if_asked(scene, scene.name);
+  const Scene& start = settled ? *settled : scene;
   // Springs in series equal one spring in tension only. Methods that accept massless nodes run
   // without this reduction.
   return Model(start, method.is(Trait::accepts_massless) ? reductions.without(Reduction::massless)

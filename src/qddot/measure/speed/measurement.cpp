@@ -22,12 +22,19 @@ constexpr double own_warm_up = 0.1;
 // The time limit [s] of a watched run. It is as long as the run before and is not timed.
 constexpr double longest_look = 60;
 
+bool reads_stiffness(const Method& method) {
+  return method.is(Trait::implicit) || method.is(Trait::bounds_steps) ||
+         method.asks(Need::stiffness) || method.asks(Need::laplacian);
+}
+
 // Measures the point.
 Point taken(const Method& method, double value, const Model& scene, double until,
             const Reference& reference, const Effort& effort) {
   Point point{.method = &method, .value = value};
   const Options options = options_for(method, value, scene, effort.options);
   std::unique_ptr<Integrator> integrator;
+  // K's pattern belongs to the scene. Else the first method that asks for it would pay for all.
+  if (reads_stiffness(method)) scene.system().stiffness_pattern();
   point.setup = seconds_of([&] { integrator = make_integrator(method, scene.system(), options); });
 
   State state = scene.initial();

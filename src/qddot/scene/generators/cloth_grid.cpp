@@ -29,10 +29,11 @@ Scene draw_cloth(const GeneratorValues& p) {
   const SceneSize size = cloth_size(p);
   scene.nodes.reserve(size.nodes);
   scene.springs.reserve(size.springs);
+  const double mass = p.at("mass") / (count * count);
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
       scene.nodes.push_back({.position = {spacing * i, spacing * j, 0},
-                             .mass = p.at("mass") / (count * count),
+                             .mass = mass,
                              .pinned = j == 0 && (i == 0 || i == count - 1)});
     }
   }
@@ -46,18 +47,20 @@ Scene draw_cloth(const GeneratorValues& p) {
     const double rest = (scene.nodes[b].position - scene.nodes[a].position).norm();
     scene.springs.push_back({{a, b}, {stiffness, rest}});
   };
+  const double structural = p.at("structural_stiffness"), shear = p.at("shear_stiffness"),
+               bending = p.at("bending_stiffness");
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
-      join(i, j, i + 1, j, p.at("structural_stiffness"));
-      join(i, j, i, j + 1, p.at("structural_stiffness"));
-      join(i, j, i + 1, j + 1, p.at("shear_stiffness"));
-      join(i, j, i + 1, j - 1, p.at("shear_stiffness"));
-      join(i, j, i + 2, j, p.at("bending_stiffness"));
-      join(i, j, i, j + 2, p.at("bending_stiffness"));
+      join(i, j, i + 1, j, structural);
+      join(i, j, i, j + 1, structural);
+      join(i, j, i + 1, j + 1, shear);
+      join(i, j, i + 1, j - 1, shear);
+      join(i, j, i + 2, j, bending);
+      join(i, j, i, j + 2, bending);
     }
   }
-  scene.faces.reserve(2 * static_cast<std::size_t>(count - 1) *
-                      static_cast<std::size_t>(count - 1));
+  const auto cells = static_cast<std::size_t>(count - 1) * static_cast<std::size_t>(count - 1);
+  scene.faces.reserve(2 * cells);
   for (int i = 0; i + 1 < count; ++i) {
     for (int j = 0; j + 1 < count; ++j) {
       scene.faces.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1)});

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
+#include "qddot/model/grouped.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh_formats.hpp"
 #include "qddot/scene/mesh/weld.hpp"
@@ -40,14 +42,34 @@ bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
 bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && !is_line_end(c); }
 
-void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges) {
+// Calls see(elements) with those of each group that share their first number, sorted, in the order
+// of these numbers. The first numbers are below `vertices`. In linear time if groups are small.
+template <class Element, class See>
+void for_sorted_groups(const std::vector<Element>& elements, std::size_t vertices, const See& see) {
+  const Grouped by_first(static_cast<int>(vertices), static_cast<int>(elements.size()), [&](int e) {
+    return static_cast<int>(elements[static_cast<std::size_t>(e)][0]);
+  });
+  std::vector<Element> group;
+  for (int first = 0; first < by_first.groups(); ++first) {
+    group.clear();
+    for (const int e : by_first[first]) group.push_back(elements[static_cast<std::size_t>(e)]);
+    std::sort(group.begin(), group.end());
+    see(group);
+  }
+}
+
+void keep_distinct(std::vector<std::array<std::size_t, 2>>& edges, std::size_t vertices) {
   for (auto& [i, j] : edges) {
     if (i > j) std::swap(i, j);
   }
   // A face may name a corner twice in a row; that is no edge.
   std::erase_if(edges, [](const auto& edge) { return edge[0] == edge[1]; });
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<std::array<std::size_t, 2>> distinct;
+  distinct.reserve(edges.size());
+  for_sorted_groups(edges, vertices, [&](const auto& group) {
+    std::unique_copy(group.begin(), group.end(), std::back_inserter(distinct));
+  });
+  edges = std::move(distinct);
 }
 
 void keep_distinct(std::vector<std::size_t>& vertices) {
@@ -80,14 +102,21 @@ void add_boundary(Mesh& mesh) {
 }
 
 // Leaves out faces that name a corner twice, and all but the first of the same three corners.
-void keep_distinct_faces(std::vector<Face>& faces) {
+void keep_distinct_faces(std::vector<Face>& faces, std::size_t vertices) {
   std::erase_if(faces, [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
-  std::vector<std::pair<Face, std::size_t>> order;
-  for (std::size_t i = 0; i < faces.size(); ++i) order.emplace_back(sorted(faces[i]), i);
-  std::sort(order.begin(), order.end());
+  std::vector<std::array<std::size_t, 4>> corners;  // sorted, and the number of the face
+  corners.reserve(faces.size());
+  for (const Face& face : faces) {
+    const auto [low, middle, high] = sorted(face);
+    corners.push_back({low, middle, high, corners.size()});
+  }
   std::vector<bool> is_repeated(faces.size(), false);
-  for (std::size_t k = 1; k < order.size(); ++k)
-    is_repeated[order[k].second] = order[k].first == order[k - 1].first;
+  for_sorted_groups(corners, vertices, [&](const auto& group) {
+    for (std::size_t k = 1; k < group.size(); ++k) {
+      const auto &one = group[k - 1], &next = group[k];
+      is_repeated[next[3]] = std::equal(one.begin(), one.begin() + 3, next.begin());
+    }
+  });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (!is_repeated[i]) faces[kept++] = faces[i];
@@ -190,30 +219,30 @@ Mesh parse_mesh(const std::string& text, const std::filesystem::path& file, doub
     throw InvalidInput(fmt::format("{}: it has no vertices; allowed are meshes with some", name));
   if (weld_within >= 0) weld(welded(mesh.vertices, weld_within), mesh);
   for (Group& group : mesh.groups) keep_distinct(group.vertices);
-  keep_distinct(mesh.edges);
+  keep_distinct(mesh.edges, mesh.vertices.size());
   add_boundary(mesh);
-  keep_distinct_faces(mesh.faces);
+  keep_distinct_faces(mesh.faces, mesh.vertices.size());
   return mesh;
 }
 
 std::vector<std::array<std::size_t, 2>> opposite_vertices(const Mesh& mesh) {
   std::vector<std::array<std::size_t, 3>> sides;  // the two ends of an edge, the corner opposite
+  sides.reserve(3 * mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles) {
     for (const auto& [i, j, k] : {std::array{a, b, c}, std::array{b, c, a}, std::array{c, a, b}})
       sides.push_back({std::min(i, j), std::max(i, j), k});
   }
-  std::sort(sides.begin(), sides.end());
-  // A triangle may be given twice, as for two groups.
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-
   std::vector<std::array<std::size_t, 2>> pairs;
-  const auto edge = [](const auto& side) { return std::pair(side[0], side[1]); };
-  for (auto first = sides.begin(); first != sides.end();) {
-    const auto last = std::find_if(first, sides.end(),
-                                   [&](const auto& side) { return edge(side) != edge(*first); });
-    if (last - first == 2) pairs.push_back({first[0][2], first[1][2]});
-    first = last;
-  }
+  for_sorted_groups(sides, mesh.vertices.size(), [&](auto& group) {
+    // A triangle may be given twice, as for two groups.
+    group.erase(std::unique(group.begin(), group.end()), group.end());
+    for (auto first = group.begin(); first != group.end();) {
+      const auto last = std::find_if(first, group.end(),
+                                     [&](const auto& side) { return side[1] != (*first)[1]; });
+      if (last - first == 2) pairs.push_back({first[0][2], first[1][2]});
+      first = last;
+    }
+  });
   return pairs;
 }
 

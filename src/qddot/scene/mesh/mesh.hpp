@@ -18,6 +18,12 @@ namespace qddot::mesh {
 // or 8 corners (see mesh_elements.hpp for their order).
 class Cells {
  public:
+  // Makes room for so many elements, and corners in all.
+  void reserve(std::size_t elements, std::size_t corners) {
+    corners_.reserve(corners);
+    ends_.reserve(elements);
+    dimensions_.reserve(elements);
+  }
   void add(int dimension, std::span<const std::size_t> corners) {
     corners_.insert(corners_.end(), corners.begin(), corners.end());
     ends_.push_back(corners_.size());

@@ -24,8 +24,9 @@ std::size_t corner_in(std::string_view word, const Words& words, std::size_t cou
   return static_cast<std::size_t>(*index > 0 ? *index - 1 : n + *index);
 }
 
-void add_line(Words& words, bool closed, Mesh& mesh) {
-  std::vector<std::size_t> corners;
+// `corners`: memory for them, as there are many lines.
+void add_line(Words& words, bool closed, std::vector<std::size_t>& corners, Mesh& mesh) {
+  corners.clear();
   for (auto word = words.in_line(); !word.empty(); word = words.in_line())
     corners.push_back(corner_in(word, words, mesh.vertices.size()));
   if (corners.size() < (closed ? 3 : 2))
@@ -64,20 +65,39 @@ bool is_keyword(std::string_view kind) {
          !(kind[0] >= '0' && kind[0] <= '9');
 }
 
+// Makes room for what the lines that begin with v and f will add if all faces are triangles.
+void reserve(std::string_view text, Mesh& mesh) {
+  constexpr std::size_t shortest_face = 7;  // f 1 2 3
+  std::size_t vertices = 0, faces = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1);
+    vertices += text.starts_with("v ");
+    faces += text.starts_with("f ") && end >= shortest_face;
+    text.remove_prefix(end + 1);
+  }
+  mesh.vertices.reserve(vertices);
+  mesh.triangles.reserve(faces);
+  mesh.faces.reserve(faces);
+  mesh.edges.reserve(3 * faces);
+  mesh.cells.reserve(faces, 3 * faces);
+}
+
 }  // namespace
 
 Mesh read_obj(std::string_view text, const std::string& file) {
   Mesh mesh;
+  reserve(text, mesh);
   Words words(text, file, Backslash::continues_lines);
   // Lines that are not read: free-form curves and surfaces, and what others added to the format.
   int left_out = 0, first_line = 0;
   std::string first;
+  std::vector<std::size_t> corners;
   do {
     const std::string_view kind = words.in_line();
     if (kind == "v") {
       add_vertex(words, mesh);
     } else if (kind == "f" || kind == "fo" || kind == "l") {
-      add_line(words, kind != "l", mesh);
+      add_line(words, kind != "l", corners, mesh);
     } else if (!kind.empty() && !is_silent_line(kind)) {
       if (!is_keyword(kind))
         words.refuse("line", kind, "are lines that begin with a keyword, such as v, f or l");

@@ -153,7 +153,8 @@ void place(const TomlTable& table, double scale, std::vector<Eigen::Vector3d>& v
 
 // A sentence about parts that no edge joins, as a mesh has along seams; empty if there is one part.
 std::string parts_sentence(const std::string& file, const Scene& scene) {
-  std::vector<std::size_t> rank(scene.nodes.size()), parent(scene.nodes.size());
+  std::vector<unsigned char> rank(scene.nodes.size());
+  std::vector<std::size_t> parent(scene.nodes.size());
   boost::disjoint_sets sets(rank.data(), parent.data());
   for (std::size_t i = 0; i < parent.size(); ++i) sets.make_set(i);
   std::size_t parts = scene.nodes.size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace qddot::reduce {
 namespace {
@@ -24,14 +25,60 @@ Eigen::Vector3d local_origin(const std::vector<Eigen::Vector3d>& x) {
   return origin;
 }
 
+// Whether all bits are zero, too, so that nothing is lost where such a vector is left out.
+bool is_plus_zero(const Eigen::Vector3d& v) {
+  return std::ranges::all_of(v, [](double x) { return x == 0 && !std::signbit(x); });
+}
+
+// The place of each number in an ascending list: looked up where the list has few gaps, else
+// searched for.
+class PlaceOf {
+ public:
+  explicit PlaceOf(std::span<const std::size_t> list) : list_(list) {
+    constexpr std::size_t most_gaps = 4;
+    if (list.empty() || list.back() - list.front() > most_gaps * list.size()) return;
+    places_.resize(list.back() - list.front() + 1);
+    for (std::size_t i = 0; i < list.size(); ++i)
+      places_[list[i] - list.front()] = static_cast<int>(i);
+  }
+  int operator()(std::size_t number) const {
+    if (!places_.empty()) return places_[number - list_.front()];
+    return static_cast<int>(std::ranges::lower_bound(list_, number) - list_.begin());
+  }
+
+ private:
+  std::span<const std::size_t> list_;
+  std::vector<int> places_;
+};
+
+// The chosen springs, with their ends by the part's numbers.
+PartSprings renumbered(const DrawnPart& drawn, std::vector<int> chosen,
+                       const std::vector<Node>& nodes, const std::vector<Spring>& springs) {
+  const std::span all(drawn.nodes);
+  const PlaceOf free(all.first(drawn.free)), pinned(all.subspan(drawn.free));
+  const auto number = [&](std::size_t node) {
+    return nodes[node].pinned ? static_cast<int>(drawn.free) + pinned(node) : free(node);
+  };
+  std::vector<std::array<int, 2>> ends;
+  ends.reserve(chosen.size());
+  for (const int e : chosen) {
+    const auto [a, b] = springs[static_cast<std::size_t>(e)].nodes;
+    ends.push_back({number(a), number(b)});
+  }
+  return {springs, std::move(chosen), std::move(ends)};
+}
+
 }  // namespace
 
-DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
+DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
                      const std::vector<Spring>& springs, const Eigen::Vector3d& gravity) {
-  DrawnPart drawn{.nodes = members.nodes, .free = members.nodes.size(), .gravity = gravity};
+  DrawnPart drawn{.nodes = {members.nodes.begin(), members.nodes.end()},
+                  .free = members.nodes.size(),
+                  .gravity = gravity};
+  const auto ends_of = [&](int e) { return springs[static_cast<std::size_t>(e)].nodes; };
   std::vector<std::size_t> pins;
-  for (const std::size_t e : members.springs) {
-    for (const std::size_t node : springs[e].nodes) {
+  for (const int e : members.springs) {
+    for (const std::size_t node : ends_of(e)) {
       if (nodes[node].pinned) pins.push_back(node);
     }
   }
@@ -39,36 +86,46 @@ DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
   pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
   drawn.nodes.insert(drawn.nodes.end(), pins.begin(), pins.end());
 
-  for (auto* vectors : {&drawn.x, &drawn.v}) vectors->reserve(drawn.nodes.size());
+  drawn.x.reserve(drawn.nodes.size());
+  drawn.mass.reserve(drawn.nodes.size());
   double total_mass = 0;
+  bool is_loaded = false, moves = false;
   for (const std::size_t i : drawn.nodes) {
     const Node& node = nodes[i];
     drawn.x.push_back(node.position);
-    drawn.v.push_back(node.pinned ? Eigen::Vector3d::Zero() : node.velocity);
     drawn.mass.push_back(node.pinned ? 0 : node.mass);
-    drawn.load.push_back(node.acting_load());
-    drawn.is_loaded = drawn.is_loaded || !drawn.load.back().isZero(0);
+    is_loaded = is_loaded || !node.acting_load().isZero(0);
+    moves = moves || !(node.pinned || is_plus_zero(node.velocity));
     total_mass += drawn.mass.back();
+  }
+  if (moves) {
+    drawn.v.reserve(drawn.nodes.size());
+    for (const std::size_t i : drawn.nodes) {
+      drawn.v.push_back(nodes[i].pinned ? Eigen::Vector3d::Zero() : nodes[i].velocity);
+    }
+  }
+  if (is_loaded) {
+    for (const std::size_t i : drawn.nodes) drawn.load.push_back(nodes[i].acting_load());
   }
   if (total_mass == 0) drawn.gravity.setZero();
   drawn.gravity_noise = rounding * drawn.gravity.norm();
   drawn.origin = local_origin(drawn.x);
   for (Eigen::Vector3d& x : drawn.x) x -= drawn.origin;
 
-  // Both runs of the node list are ascending.
-  const auto free_end = drawn.nodes.begin() + static_cast<std::ptrdiff_t>(drawn.free);
-  const auto number = [&](std::size_t node) {
-    const auto found = nodes[node].pinned ? std::lower_bound(free_end, drawn.nodes.end(), node)
-                                          : std::lower_bound(drawn.nodes.begin(), free_end, node);
-    return static_cast<std::size_t>(found - drawn.nodes.begin());
-  };
-  drawn.springs.reserve(members.springs.size());
-  for (const std::size_t e : members.springs) {
-    const auto [a, b] = springs[e].nodes;
-    drawn.springs.push_back(
-        {{number(a), number(b)}, springs[e].law, springs[e].holds, springs[e].stiff});
-  }
+  drawn.springs = renumbered(drawn, std::move(members.springs), nodes, springs);
   return drawn;
+}
+
+PartSprings drawn_springs(const DrawnPart& drawn, const std::vector<Node>& nodes,
+                          const std::vector<Spring>& springs) {
+  std::vector<bool> is_own(nodes.size(), false);
+  for (std::size_t i = 0; i < drawn.free; ++i) is_own[drawn.nodes[i]] = true;
+  std::vector<int> chosen;
+  for (int e = 0; e < std::ssize(springs); ++e) {
+    const auto [a, b] = springs[static_cast<std::size_t>(e)].nodes;
+    if (is_own[a] || is_own[b]) chosen.push_back(e);
+  }
+  return renumbered(drawn, std::move(chosen), nodes, springs);
 }
 
 double largest_coordinate(const std::vector<Eigen::Vector3d>& vectors) {

@@ -6,6 +6,7 @@
 
 #include "qddot/scene/reduce/fall.hpp"
 #include "qddot/scene/reduce/part_members.hpp"
+#include "qddot/scene/reduce/part_springs.hpp"
 #include "qddot/scene/scene.hpp"
 
 namespace qddot::reduce {
@@ -19,21 +20,36 @@ struct DrawnPart {
   // the part. Positions are then exact differences. Rounding and tolerances scale with the part's
   // size instead of its distance from the scene's origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> x{}, v{};  // of all of them; v = 0 where pinned
-  std::vector<double> mass{};             // of all of them; 0 where pinned
-  std::vector<Eigen::Vector3d> load{};    // [N], of all of them; 0 where pinned
-  bool is_loaded = false;                 // whether any of these is not zero
-  std::vector<Spring> springs{};          // between numbers of this part
+  std::vector<Eigen::Vector3d> x{};     // of all of them
+  std::vector<Eigen::Vector3d> v{};     // of all of them; 0 where pinned; empty if all are 0
+  std::vector<double> mass{};           // of all of them; 0 where pinned
+  std::vector<Eigen::Vector3d> load{};  // [N], of all of them; 0 where pinned; empty if all are
+  PartSprings springs{};                // between numbers of this part
   Eigen::Vector3d gravity =
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
   double gravity_noise = 0;     // the size of gravity [m/s^2] below which it is rounding
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
   bool offers_split = false;    // whether its system is to offer Split
+
+  // Whether a load is not zero.
+  bool is_loaded() const { return !load.empty(); }
+  Eigen::Vector3d load_of(std::size_t i) const { return of(load, i); }
+  Eigen::Vector3d velocity_of(std::size_t i) const { return of(v, i); }
+
+ private:
+  static Eigen::Vector3d of(const std::vector<Eigen::Vector3d>& vectors, std::size_t i) {
+    return vectors.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : vectors[i];
+  }
 };
 
-// Makes the part of these members, whose numbers are those of the scene's nodes and springs.
-DrawnPart drawn_part(const PartMembers& members, const std::vector<Node>& nodes,
+// Makes the part of these members, whose numbers are those of the scene's nodes and springs. It
+// refers to `springs`.
+DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
                      const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
+
+// The springs of the part once more, found among all by its nodes.
+PartSprings drawn_springs(const DrawnPart& drawn, const std::vector<Node>& nodes,
+                          const std::vector<Spring>& springs);
 
 // The relative error that rounding may have left in coordinates that come from a few operations.
 inline constexpr double rounding = 64 * 0x1p-52;

@@ -10,9 +10,10 @@ namespace {
 constexpr double few_roundings = 4 * 0x1p-52;
 
 bool has_loose_node(const DrawnPart& drawn) {
+  if (std::ranges::find(drawn.mass, 0.0) == drawn.mass.end()) return false;
   std::vector<bool> is_on_spring(drawn.nodes.size(), false);
-  for (const Spring& spring : drawn.springs) {
-    for (const std::size_t i : spring.nodes) is_on_spring[i] = true;
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    for (const int i : drawn.springs.ends(e)) is_on_spring[static_cast<std::size_t>(i)] = true;
   }
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (drawn.mass[i] == 0 && !is_on_spring[i]) return true;
@@ -29,12 +30,13 @@ void let_fall(DrawnPart& drawn) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), load = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     mass += drawn.mass[i];
-    sum += drawn.mass[i] * (drawn.v[i] - drawn.v.front());
+    sum += drawn.mass[i] * (drawn.velocity_of(i) - drawn.velocity_of(0));
+    if (!drawn.is_loaded()) continue;
     load += drawn.load[i];
     size_of_loads += drawn.load[i].norm();
   }
   if (!(mass > 0)) return;
-  const Eigen::Vector3d mean = drawn.v.front() + sum / mass;
+  const Eigen::Vector3d mean = drawn.velocity_of(0) + sum / mass;
   if (!mean.allFinite()) return;
   const Eigen::Vector3d mean_load = load / mass;
   if (!mean_load.allFinite()) return;
@@ -45,15 +47,18 @@ void let_fall(DrawnPart& drawn) {
 }
 
 bool rests(const DrawnPart& drawn) {
-  if (drawn.fall.mass == 0 || drawn.is_loaded) return false;
+  if (drawn.fall.mass == 0 || drawn.is_loaded()) return false;
   const double slow = few_roundings * drawn.fall.velocity.lpNorm<Eigen::Infinity>();
   if (largest_coordinate(drawn.v) > slow) return false;
   const double near =
       few_roundings * (largest_coordinate(drawn.x) + drawn.origin.lpNorm<Eigen::Infinity>());
-  return std::ranges::all_of(drawn.springs, [&](const Spring& spring) {
-    const double l = (drawn.x[spring.nodes[1]] - drawn.x[spring.nodes[0]]).norm();
-    return std::abs(l - spring.law.rest_length) <= near;
-  });
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    const auto [a, b] = drawn.springs.ends(e);
+    const double l =
+        (drawn.x[static_cast<std::size_t>(b)] - drawn.x[static_cast<std::size_t>(a)]).norm();
+    if (!(std::abs(l - drawn.springs.law(e).rest_length) <= near)) return false;
+  }
+  return true;
 }
 
 }  // namespace qddot::reduce

@@ -1,9 +1,9 @@
 #include "qddot/scene/reduce/folded_part.hpp"
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
+#include <cstdint>
 
+#include "qddot/model/grouped.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
 
 namespace qddot::reduce {
@@ -27,92 +27,97 @@ int original_of(int i, const Orbits& orbits, int mirrors, const std::vector<Vect
   return best;
 }
 
-std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedPart& half) {
+std::vector<ImageOf> images_of(const Orbits& orbits, int mirrors, const FoldedNodes& half) {
   std::vector<ImageOf> images(half.y.size());
   for (int i = 0; i < std::ssize(images); ++i) {
     if (original_of(i, orbits, mirrors, half.y) != i) continue;
     const unsigned zero = half.on_planes[static_cast<std::size_t>(i)];
     for (unsigned g = 0; g < orbits.elements(); ++g) {
       // Zero is its own image.
-      Vector3d signs = Vector3d::Ones();
-      for (int d = 0; d < mirrors; ++d) {
-        if ((g & ~zero) >> d & 1) signs[d] = -1;
-      }
-      images[static_cast<std::size_t>(orbits.image(g, i))] = {static_cast<std::size_t>(i), signs};
+      images[static_cast<std::size_t>(orbits.image(g, i))] = {
+          i, Signs{static_cast<unsigned char>(g)}.without(zero)};
     }
   }
   return images;
 }
 
-// Springs with equal keys may be added: they have the same ends, images and length.
-auto ends(const FoldedPart::Spring& spring) {
-  const auto [low, high] = std::minmax(spring.a, spring.b);
-  return std::tuple(low, high, spring.mirror[0], spring.mirror[1], spring.mirror[2], spring.holds);
-}
-
-// One spring for each set of images, with the sum of their stiffnesses, at the place of the first.
-std::vector<FoldedPart::Spring> summed(const std::vector<FoldedPart::Spring>& springs,
-                                       double tolerance) {
-  std::vector<std::size_t> order(springs.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](std::size_t e) {
-    return std::tuple(ends(springs[e]), springs[e].law.rest_length);
-  });
-  std::vector<FoldedPart::Spring> sums = springs;
-  std::vector<bool> is_summed(springs.size(), false);
-  for (std::size_t i = 1, first = 0; i < order.size(); ++i) {
-    FoldedPart::Spring& sum = sums[order[first]];
-    const FoldedPart::Spring& next = springs[order[i]];
-    if (ends(next) != ends(sum) || next.law.rest_length - sum.law.rest_length > tolerance) {
-      first = i;
-      continue;
-    }
-    sum.law.stiffness += next.law.stiffness;
-    sum.law.quartic += next.law.quartic;
-    sum.stiff = sum.stiff || next.stiff;
-    is_summed[order[i]] = true;
-  }
-  std::vector<FoldedPart::Spring> left;
-  for (std::size_t e = 0; e < sums.size(); ++e) {
-    if (!is_summed[e]) left.push_back(sums[e]);
-  }
-  return left;
-}
-
 }  // namespace
 
-FoldedPart folded(const DrawnPart& drawn, const Mirrors& mirrors) {
-  FoldedPart result;
+FoldedNodes folded(const DrawnPart& drawn, const Mirrors& mirrors) {
+  FoldedNodes half;
   const Orbits orbits(mirrors.images);
+  half.y.reserve(drawn.nodes.size());
+  half.on_planes.reserve(drawn.nodes.size());
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
-    result.y.push_back(mirrors.frame.point(drawn.x[i]));
-    result.w.push_back(mirrors.frame.direction(drawn.v[i]));
+    half.y.push_back(mirrors.frame.point(drawn.x[i]));
     const unsigned zero = orbits.zero_coordinates(static_cast<int>(i));
     for (int d = 0; d < mirrors.count; ++d) {
-      if (zero >> d & 1) result.y[i][d] = result.w[i][d] = 0;
+      if (zero >> d & 1) half.y[i][d] = 0;
     }
-    result.on_planes.push_back(zero);
+    half.on_planes.push_back(static_cast<unsigned char>(zero));
   }
-  result.images = images_of(orbits, mirrors.count, result);
-  result.springs.reserve(drawn.springs.size());
-  for (const qddot::Spring& spring : drawn.springs) {
-    const ImageOf &a = result.images[spring.nodes[0]], &b = result.images[spring.nodes[1]];
-    FoldedPart::Spring image{a.original, b.original,   a.signs.cwiseProduct(b.signs),
-                             spring.law, spring.holds, spring.stiff};
-    // A sign of a coordinate that is zero at one end changes no length.
-    const unsigned zero = result.on_planes[a.original] | result.on_planes[b.original];
-    for (int d = 0; d < mirrors.count; ++d) {
-      if (zero >> d & 1) image.mirror[d] = 1;
+  half.images = images_of(orbits, mirrors.count, half);
+  return half;
+}
+
+FoldedSprings::FoldedSprings(const DrawnPart& drawn, const FoldedNodes& half,
+                             const Mirrors& mirrors)
+    : drawn_(drawn), half_(half), count_(static_cast<std::size_t>(drawn.springs.size())) {
+  if (mirrors.count > 0) chain_images(rounding * largest_coordinate(drawn.x));
+}
+
+// Springs with the same ends, images and length may be added. They are found among those with the
+// same lower end.
+void FoldedSprings::chain_images(double tolerance) {
+  const auto springs = static_cast<std::size_t>(drawn_.springs.size());
+  next_.assign(springs, none);
+  is_in_other_.assign(springs, false);
+  const Grouped by_low(static_cast<int>(half_.y.size()), drawn_.springs.size(), [&](int e) {
+    const auto [a, b] = drawn_.springs.ends(e);
+    return std::min(half_.images[static_cast<std::size_t>(a)].original,
+                    half_.images[static_cast<std::size_t>(b)].original);
+  });
+  struct Image {
+    std::uint64_t kind;  // the higher end, mirror and validity
+    double rest_length;
+    int e;
+    bool operator<(const Image& other) const {
+      if (kind != other.kind) return kind < other.kind;
+      return rest_length != other.rest_length ? rest_length < other.rest_length : e < other.e;
     }
-    // Both ends are one node forever: without a rest length (see mirrors_of) the spring has no
-    // force.
-    if (image.a == image.b && image.mirror == Vector3d::Ones()) continue;
-    result.springs.push_back(image);
+  };
+  constexpr int ahead = 8;
+  std::vector<Image> images;
+  for (int low = 0; low < by_low.groups(); ++low) {
+    images.clear();
+    if (low + ahead < by_low.groups()) {
+      for (const int e : by_low[low + ahead]) drawn_.springs.prefetch(e);
+    }
+    for (const int e : by_low[low]) {
+      const FoldedEnds own = ends(e);
+      if (own.coincide()) {
+        is_in_other_[static_cast<std::size_t>(e)] = true;
+        --count_;
+      } else {
+        const PartSprings::One spring = drawn_.springs[e];
+        const auto high = static_cast<std::uint64_t>(std::max(own.a, own.b));
+        const auto holds = static_cast<std::uint64_t>(spring.holds);
+        images.push_back(
+            {high << 16 | std::uint64_t{own.mirror.minus} << 8 | holds, spring.law.rest_length, e});
+      }
+    }
+    std::ranges::sort(images, std::less<>());
+    for (std::size_t i = 1, first = 0; i < images.size(); ++i) {
+      if (images[i].kind != images[first].kind ||
+          images[i].rest_length - images[first].rest_length > tolerance) {
+        first = i;
+        continue;
+      }
+      next_[static_cast<std::size_t>(images[i - 1].e)] = images[i].e;
+      is_in_other_[static_cast<std::size_t>(images[i].e)] = true;
+      --count_;
+    }
   }
-  if (mirrors.count > 0) {
-    result.springs = summed(result.springs, rounding * largest_coordinate(drawn.x));
-  }
-  return result;
 }
 
 }  // namespace qddot::reduce

@@ -58,7 +58,6 @@ Span span_of(const DrawnPart& drawn) {
     for (const auto& x : drawn.x) span.offer(x - drawn.x.front(), noise);
     for (const auto& v : drawn.v) span.offer(v, speed_noise);
     span.offer(drawn.gravity, drawn.gravity_noise);
-    if (!drawn.is_loaded) continue;
     for (const auto& load : drawn.load) span.offer(load, load_noise);
   } while (span.take() && span.rank() < 3);
   return span;

@@ -1,14 +1,14 @@
 #include "qddot/scene/reduce/mirror.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
-#include <span>
-#include <tuple>
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/scene/reduce/orbits.hpp"
+#include "qddot/scene/reduce/part_neighbours.hpp"
+#include "qddot/scene/reduce/places.hpp"
 
 namespace qddot::reduce {
 namespace {
@@ -25,98 +25,14 @@ struct Plane {
   Vector3d turned(const Vector3d& v) const { return v - 2 * normal.dot(v) * normal; }
 };
 
-// Finds nodes by their place, up to a tolerance.
-class Places {
- public:
-  explicit Places(const std::vector<Vector3d>& x) : x_(x), order_(x.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    std::ranges::stable_sort(order_, {}, [&](int i) { return key(x[i]); });
-  }
-
-  // Whether some place holds two nodes.
-  bool any_shared(double tolerance) const {
-    for (int i = 0; i < std::ssize(x_); ++i) {
-      if (find(x_[i], tolerance, [&](int j) { return j != i; }) >= 0) return true;
-    }
-    return false;
-  }
-
-  // The first node within `tolerance` of a place that `fits`, or -1.
-  template <class Fits>
-  int find(const Vector3d& place, double tolerance, const Fits& fits) const {
-    // Nodes are no farther apart along a unit vector than in space.
-    const double low = key(place) - 2 * tolerance;
-    auto at = std::ranges::lower_bound(order_, low, {}, [&](int i) { return key(x_[i]); });
-    for (; at != order_.end() && key(x_[*at]) <= low + 4 * tolerance; ++at) {
-      if ((x_[*at] - place).norm() <= tolerance && fits(*at)) return *at;
-    }
-    return -1;
-  }
-
- private:
-  // A direction along which the nodes of a regular grid have different places.
-  static double key(const Vector3d& x) {
-    return x.dot(Vector3d(0.52573111211913361, 0.64018438963104533, 0.56025190285797853));
-  }
-
-  const std::vector<Vector3d>& x_;
-  std::vector<int> order_;
-};
-
-// Finds springs by their ends.
-class Ends {
- public:
-  explicit Ends(const std::vector<Spring>& springs) : springs_(springs), order_(springs.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    std::ranges::sort(order_, {}, [&](std::size_t e) { return key(e); });
-  }
-
-  // The springs between the same two nodes, shortest rest length first; as indices.
-  std::span<const std::size_t> between(int a, int b) const {
-    const auto same = [&](std::size_t e) { return pair(e); };
-    const std::pair<std::size_t, std::size_t> ends = std::minmax(a, b);
-    return {std::ranges::lower_bound(order_, ends, {}, same),
-            std::ranges::upper_bound(order_, ends, {}, same)};
-  }
-
- private:
-  std::pair<std::size_t, std::size_t> pair(std::size_t e) const {
-    const auto [a, b] = springs_[e].nodes;
-    return {std::min(a, b), std::max(a, b)};
-  }
-  std::tuple<std::pair<std::size_t, std::size_t>, double, double, double> key(std::size_t e) const {
-    const SpringLaw& law = springs_[e].law;
-    return {pair(e), law.rest_length, law.stiffness, law.quartic};
-  }
-
-  const std::vector<Spring>& springs_;
-  std::vector<std::size_t> order_;
-};
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
-
-// The nodes in an order in which each follows one of its neighbours, if possible.
-std::vector<int> along_springs(const DrawnPart& drawn,
-                               const std::vector<std::vector<int>>& neighbours) {
-  std::vector<int> order;
-  std::vector<bool> is_seen(drawn.x.size(), false);
-  for (int first = 0; first < std::ssize(drawn.x); ++first) {
-    if (is_seen[first]) continue;
-    is_seen[first] = true;
-    order.push_back(first);
-    for (std::size_t at = order.size() - 1; at < order.size(); ++at) {
-      for (const int next : neighbours[order[at]]) {
-        if (!is_seen[next]) order.push_back(next);
-        is_seen[next] = true;
-      }
-    }
-  }
-  return order;
-}
 
 // How far places [m], velocities [m/s] and loads [N] may be from the mirrored ones.
 struct Closeness {
   double place, speed, load;
+  double mass = rounding;  // relative
 };
 
 // Finds mirror planes of a part.
@@ -128,28 +44,25 @@ class MirrorSearch {
         exact_{tolerance_, rounding * largest_coordinate(drawn.v),
                rounding * largest_coordinate(drawn.load)},
         places_(drawn.x),
-        ends_(drawn.springs),
-        neighbours_(drawn.x.size()),
-        order_(drawn.x.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
+        ends_(drawn) {
     if (!places_.any_shared(tolerance_)) return;
-    for (const Spring& spring : drawn.springs) {
-      const auto [a, b] = spring.nodes;
-      neighbours_[a].push_back(static_cast<int>(b));
-      neighbours_[b].push_back(static_cast<int>(a));
-    }
-    order_ = along_springs(drawn, neighbours_);
+    neighbours_.emplace(drawn);
+    order_ = neighbours_->along_springs();
   }
 
   // Whether a spring with a rest length is so short that rounding could put both ends into one
   // place, where its direction is undefined.
   bool has_unclear_spring() const {
     constexpr double clear = 1024;  // a direction accurate to a thousandth
-    return std::ranges::any_of(drawn_.springs, [&](const Spring& spring) {
-      const auto [a, b] = spring.nodes;
-      return spring.law.rest_length > 0 &&
-             !((drawn_.x[b] - drawn_.x[a]).norm() > clear * tolerance_);
-    });
+    const double least = clear * tolerance_, surely = 2 * least * least;
+    for (int e = 0; e < drawn_.springs.size(); ++e) {
+      const auto [a, b] = drawn_.springs.ends(e);
+      const double square = (drawn_.x[at(b)] - drawn_.x[at(a)]).squaredNorm();
+      if (!(square > surely) && drawn_.springs.law(e).rest_length > 0 &&
+          !(std::sqrt(square) > least))
+        return true;
+    }
+    return false;
   }
 
   // A plane normal to `direction` that mirrors the part, with the images of the nodes; these
@@ -165,17 +78,18 @@ class MirrorSearch {
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
       const double extent = largest_coordinate(drawn_.x);
-      const auto roughly = images(plane,
-                                  {std::max(tolerance_, coarse * extent), coarse * extent,
-                                   coarse * largest_coordinate(drawn_.load)},
-                                  {}, {});
+      const Closeness near{std::max(tolerance_, coarse * extent), coarse * extent,
+                           coarse * largest_coordinate(drawn_.load)};
+      if (!may_mirror(plane, near)) return {};
+      const auto roughly = images(plane, near, {}, {});
       if (!roughly || !refine(plane, *roughly)) return {};
       center(plane);
       if (std::abs(plane.normal.dot(drawn_.gravity)) > drawn_.gravity_noise) return {};
     }
+    if (!may_mirror(plane, exact_)) return {};
     // The image of the first node decides the images of its neighbours. If several nodes are in one
     // place, each of them is tried.
-    for (const int first : candidates(plane, order_.front())) {
+    for (const int first : candidates(plane, first_node())) {
       const auto exactly = images(plane, exact_, earlier, first);
       if (exactly && moves_any(*exactly) && maps_springs(*exactly)) {
         return std::pair(plane, *exactly);
@@ -195,12 +109,33 @@ class MirrorSearch {
     plane.offset = low + (high - low) / 2;
   }
 
+  // Whether a sample of the nodes have images. What some of them lack, all need not be asked. The
+  // images that are looked for one by one may be off from those of others by several times `near`:
+  // each reflection of an orbit adds its own. So a sample fails only where all would fail.
+  bool may_mirror(const Plane& plane, const Closeness& near) const {
+    constexpr std::size_t sample = 1000;
+    constexpr double wider = 16;
+    if (drawn_.x.size() < 2 * sample) return true;
+    const Closeness wide{wider * near.place, wider * near.speed, wider * near.load,
+                         wider * near.mass};
+    const std::size_t step = drawn_.x.size() / sample;
+    for (std::size_t i = 0; i < drawn_.x.size(); i += step) {
+      const int own = static_cast<int>(i);
+      const int image = places_.find(plane.image(drawn_.x[i]), wide.place,
+                                     [&](int j) { return are_alike(plane, own, j, wide); });
+      if (image < 0) return false;
+    }
+    return true;
+  }
+
   bool are_alike(const Plane& plane, int i, int j, const Closeness& near) const {
     const int free = static_cast<int>(drawn_.free);
     return (j < free) == (i < free) &&
-           nearly(drawn_.mass[i], drawn_.mass[j], rounding * drawn_.mass[i]) &&
-           (plane.turned(drawn_.v[i]) - drawn_.v[j]).norm() <= near.speed &&
-           (plane.turned(drawn_.load[i]) - drawn_.load[j]).norm() <= near.load;
+           nearly(drawn_.mass[at(i)], drawn_.mass[at(j)], near.mass * drawn_.mass[at(i)]) &&
+           (drawn_.v.empty() ||
+            (plane.turned(drawn_.v[at(i)]) - drawn_.v[at(j)]).norm() <= near.speed) &&
+           (!drawn_.is_loaded() ||
+            (plane.turned(drawn_.load[at(i)]) - drawn_.load[at(j)]).norm() <= near.load);
   }
 
   std::vector<int> candidates(const Plane& plane, int i) const {
@@ -218,10 +153,11 @@ class MirrorSearch {
                                const std::vector<Images>& earlier, std::optional<int> first) const {
     Images all(drawn_.x.size(), -1);
     const Orbits orbits(earlier);
-    for (const int i : order_) {
+    for (int place = 0; place < std::ssize(all); ++place) {
+      const int i = order_.empty() ? place : order_[at(place)];
       if (all[i] >= 0) continue;
       const int image = places_.find(plane.image(drawn_.x[i]), near.place, [&](int j) {
-        return (i != order_.front() || !first || j == *first) && all[j] < 0 &&
+        return (i != first_node() || !first || j == *first) && all[j] < 0 &&
                are_alike(plane, i, j, near) && orbits.are_fixed_alike(i, j) &&
                neighbours_agree(i, j, all);
       });
@@ -235,10 +171,13 @@ class MirrorSearch {
     return all;
   }
 
+  int first_node() const { return order_.empty() ? 0 : order_.front(); }
+
   // Whether the springs of i to nodes with known images agree with those of j to these images.
+  // Only nodes in one place have a choice.
   bool neighbours_agree(int i, int j, const Images& images) const {
-    return std::ranges::all_of(neighbours_[i], [&](int next) {
-      return images[next] < 0 || are_springs_alike(i, next, j, images[next]);
+    return !neighbours_ || neighbours_->all_of(i, [&](int next) {
+      return images[at(next)] < 0 || are_springs_alike(i, next, j, images[at(next)]);
     });
   }
 
@@ -268,31 +207,59 @@ class MirrorSearch {
   }
 
   bool maps_springs(const Images& images) const {
-    return std::ranges::all_of(drawn_.springs, [&](const Spring& spring) {
-      const auto [a, b] = spring.nodes;
-      return are_springs_alike(static_cast<int>(a), static_cast<int>(b), images[a], images[b]);
-    });
+    if (!ends_.any_shared()) return maps_single_springs(images);
+    for (int e = 0; e < drawn_.springs.size(); ++e) {
+      const auto [a, b] = drawn_.springs.ends(e);
+      if (!are_springs_alike(a, b, images[at(a)], images[at(b)])) return false;
+    }
+    return true;
+  }
+
+  // The same if no two springs join the same nodes.
+  bool maps_single_springs(const Images& images) const {
+    const int springs = drawn_.springs.size();
+    std::array<int, 256> image_of;  // of a block of springs
+    constexpr int block = image_of.size();
+    for (int first = 0; first < springs; first += block) {
+      const int end = std::min(first + block, springs);
+      for (int e = first; e < end; ++e) {
+        const auto [a, b] = drawn_.springs.ends(e);
+        const int image = ends_.first_between(images[at(a)], images[at(b)]);
+        if (image < 0) return false;
+        drawn_.springs.prefetch(image);
+        image_of[at(e - first)] = image;
+      }
+      for (int e = first; e < end; ++e) {
+        if (!are_alike(e, image_of[at(e - first)])) return false;
+      }
+    }
+    return true;
   }
 
   // Compares all springs between a and b with all between c and d.
   bool are_springs_alike(int a, int b, int c, int d) const {
-    const auto own = ends_.between(a, b), other = ends_.between(c, d);
-    return std::ranges::equal(own, other, [&](std::size_t e, std::size_t f) {
-      const Spring &drawn = drawn_.springs[e], &image = drawn_.springs[f];
-      const SpringLaw &one = drawn.law, &two = image.law;
-      return nearly(one.rest_length, two.rest_length, tolerance_) &&
-             nearly(one.stiffness, two.stiffness, rounding * one.stiffness) &&
-             nearly(one.quartic, two.quartic, rounding * one.quartic) && drawn.holds == image.holds;
-    });
+    ends_.between(a, b, own_);
+    ends_.between(c, d, other_);
+    return std::ranges::equal(own_, other_, [&](int e, int f) { return are_alike(e, f); });
+  }
+
+  // Compares a spring with one that may be its image.
+  bool are_alike(int e, int f) const {
+    const auto drawn = drawn_.springs[e], image = drawn_.springs[f];
+    const SpringLaw &one = drawn.law, &two = image.law;
+    return nearly(one.rest_length, two.rest_length, tolerance_) &&
+           nearly(one.stiffness, two.stiffness, rounding * one.stiffness) &&
+           nearly(one.quartic, two.quartic, rounding * one.quartic) && drawn.holds == image.holds;
   }
 
   const DrawnPart& drawn_;
   double tolerance_;  // of places and rest lengths
   Closeness exact_;   // within rounding
   Places places_;
-  Ends ends_;
-  std::vector<std::vector<int>> neighbours_;  // of each node; empty where no two nodes coincide
-  std::vector<int> order_;                    // in which images are found
+  SpringEnds ends_;
+  std::optional<Neighbours> neighbours_;  // if nodes coincide
+  std::vector<int> order_;                // in which images are found; empty: that of the nodes
+  mutable std::vector<int> own_, other_;  // of are_springs_alike, which is called for all springs
 };
 
 // The directions in the frame that are tried as normals.

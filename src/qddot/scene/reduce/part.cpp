@@ -12,25 +12,28 @@ namespace {
 constexpr int no_number = -1;
 
 // The originals' numbers in the network, of free ones only or of pinned ones too.
-std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedPart& half, bool with_pins) {
+std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedNodes& half, bool with_pins) {
   std::vector<int> numbers(drawn.nodes.size(), no_number);
   int next = 0;
   for (std::size_t i = 0; i < (with_pins ? drawn.nodes.size() : drawn.free); ++i) {
-    if (half.images[i].original == i) numbers[i] = next++;
+    if (half.images[i].original == static_cast<int>(i)) numbers[i] = next++;
   }
   return numbers;
 }
 
-void add_spring(const FoldedPart::Spring& spring, const FoldedPart& half,
+void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
                 const std::vector<int>& numbers, Network& network) {
-  const auto& [a, b, mirror, law, holds, stiff] = spring;
-  const int i = numbers[a], j = numbers[b];
+  const auto& [a, b, mirror] = spring.ends;
+  const auto& [ends, law, holds, stiff] = spring;
+  const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
+  const int i = numbers[from], j = numbers[to];
+  const Eigen::Vector3d signs = mirror.diagonal();
   if (i == no_number) {
-    network.anchors.push_back({j, mirror.cwiseProduct(half.y[a]), law, holds, stiff});
+    network.anchors.push_back({j, signs.cwiseProduct(half.y[from]), law, holds, stiff});
   } else if (j == no_number) {
-    network.anchors.push_back({i, mirror.cwiseProduct(half.y[b]), law, holds, stiff});
-  } else if (mirror != Eigen::Vector3d::Ones()) {
-    network.image_links.push_back({i, j, mirror, law, holds, stiff});
+    network.anchors.push_back({i, signs.cwiseProduct(half.y[to]), law, holds, stiff});
+  } else if (!mirror.are_all_plus()) {
+    network.image_links.push_back({i, j, signs, law, holds, stiff});
   } else {
     network.links.push_back({i, j, law, holds, stiff});
   }
@@ -40,8 +43,8 @@ void add_spring(const FoldedPart::Spring& spring, const FoldedPart& half,
 // line, in a direction that a one-dimensional network does not have.
 std::vector<bool> joints_of(const DrawnPart& drawn) {
   std::vector<int> springs(drawn.nodes.size(), 0);
-  for (const Spring& spring : drawn.springs) {
-    for (const std::size_t i : spring.nodes) ++springs[i];
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    for (const int i : drawn.springs.ends(e)) ++springs[static_cast<std::size_t>(i)];
   }
   std::vector<bool> joints;
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
@@ -53,43 +56,63 @@ std::vector<bool> joints_of(const DrawnPart& drawn) {
 }  // namespace
 
 Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
-    : origin_(drawn.origin), fall_(drawn.fall), is_loaded_(drawn.is_loaded) {
+    : origin_(drawn.origin), fall_(drawn.fall), is_loaded_(drawn.is_loaded()) {
   Frame frame{.dimension = dimension};
   if (reductions.has(Reduction::dimension)) frame = frame_of(drawn, dimension);
   mirrors_.frame = frame;
   if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(drawn, frame);
 
   const bool with_pins = !reductions.has(Reduction::pins);
-  const int axes = frame.dimension;
-  const FoldedPart half = folded(drawn, mirrors_);
-  const std::vector<int> numbers = numbers_of(drawn, half, with_pins);
+  make_network(drawn, dimension, with_pins);
+  network_.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
+  network_.offers_split = drawn.offers_split;
+  if (network_.uses_constant_stiffness && !with_pins) {
+    if (auto straight = straightened(network_, initial_.q, initial_.v, is_loaded_)) {
+      network_ = std::move(*straight);
+      is_straightened_ = true;
+    }
+  }
+  if (!with_pins) is_held_.clear();
+}
 
-  Network network{.dimension = axes};
-  network.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
-  network.offers_split = drawn.offers_split;
-  std::vector<double> q, v;
-  std::vector<bool> is_held;
+void Part::make_system() {
+  system_ = make_mass_spring(std::move(network_));
+  network_ = {};
+  if (!is_held_.empty())
+    system_ = std::make_unique<ConstrainedSystem>(std::move(system_), std::move(is_held_));
+}
+
+// Folds the part along its mirrors, and makes a network of its originals.
+void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
+  const int axes = mirrors_.frame.dimension;
+  const FoldedNodes half = folded(drawn, mirrors_);
+  const std::vector<int> numbers = numbers_of(drawn, half, with_pins);
+  Network& network = network_;
+  network.dimension = axes;
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
     if (numbers[i] == no_number) continue;
-    Unknowns unknowns{std::ssize(q), 0, {}};
+    const int first = layout_.empty() ? 0 : layout_.back().first + layout_.back().count;
+    Unknowns unknowns{first, 0, {}};
     for (int d = 0; d < axes; ++d) {
       if (half.on_planes[i] >> d & 1) continue;
-      unknowns.axis[static_cast<std::size_t>(unknowns.count++)] = d;
-      q.push_back(half.y[i][d]);
-      v.push_back(half.w[i][d]);
-      is_held.push_back(i >= drawn.free);
+      unknowns.axis[static_cast<std::size_t>(unknowns.count++)] = static_cast<std::int8_t>(d);
+      is_held_.push_back(i >= drawn.free);
     }
     layout_.push_back(unknowns);
     if (mirrors_.count > 0) network.zero_coordinates.push_back(half.on_planes[i]);
   }
-  initial_ = {0, Vec::Map(q.data(), std::ssize(q)), Vec::Map(v.data(), std::ssize(v))};
+  set_initial(drawn, half, numbers, std::ssize(is_held_));
 
   const auto count = std::ssize(layout_);
   network.node_mass = Vec::Zero(count);
   network.load = Vec::Zero(axes * count);
   const Eigen::Vector3d g = mirrors_.frame.direction(drawn.gravity);
+  nodes_.reserve(drawn.free);
+  masses_.reserve(drawn.free);
+  images_.reserve(drawn.free);
   for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
-    const int number = numbers[half.images[i].original];
+    const ImageOf image = half.images[i];
+    const int number = numbers[static_cast<std::size_t>(image.original)];
     if (number == no_number) continue;
     // A pin carries the node's weight, so its mass may be any positive number.
     network.node_mass[number] += i < drawn.free ? drawn.mass[i] : 1;
@@ -99,7 +122,7 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
     if (is_loaded_) {
       // The force on an original is that on its images, mirrored back.
       const Eigen::Vector3d load =
-          half.images[i].signs.cwiseProduct(mirrors_.frame.direction(drawn.load[i]));
+          image.signs.diagonal().cwiseProduct(mirrors_.frame.direction(drawn.load[i]));
       for (int d = 0; d < axes; ++d) network.load[axes * number + d] += load[d];
       network.constant_energy -= drawn.load[i].dot(mirrors_.frame.origin);
       energy_of_origin_ -= drawn.load[i].dot(origin_);
@@ -107,39 +130,50 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
     if (i >= drawn.free) continue;
     nodes_.push_back(drawn.nodes[i]);
     masses_.push_back(drawn.mass[i]);
-    images_.push_back({number, half.images[i].signs});
+    images_.push_back({number, image.signs});
   }
-  network.links.reserve(half.springs.size());
-  const std::vector<bool> joints = joints_of(drawn);
-  for (FoldedPart::Spring spring : half.springs) {
-    const bool would_fold = axes == 1 && dimension > 1 && (joints[spring.a] || joints[spring.b]);
+  const FoldedSprings springs(drawn, half, mirrors_);
+  network.links.reserve(springs.count());
+  const bool may_fold = axes == 1 && dimension > 1;
+  const std::vector<bool> joints = may_fold ? joints_of(drawn) : std::vector<bool>();
+  springs.for_each([&](FoldedSpring spring) {
+    const bool would_fold = may_fold && (joints[static_cast<std::size_t>(spring.ends.a)] ||
+                                         joints[static_cast<std::size_t>(spring.ends.b)]);
     if (would_fold) spring.holds = Holds::in_tension;
     add_spring(spring, half, numbers, network);
-  }
+  });
+}
 
-  if (network.uses_constant_stiffness && !with_pins) {
-    if (auto straight = straightened(network, initial_.q, initial_.v, is_loaded_)) {
-      network = std::move(*straight);
-      is_straightened_ = true;
+// The start of the originals. A coordinate that stays zero is no unknown.
+void Part::set_initial(const DrawnPart& drawn, const FoldedNodes& half,
+                       const std::vector<int>& numbers, Index size) {
+  initial_ = {0, Vec(size), Vec(size)};
+  Index at = 0;
+  for (std::size_t i = 0; i < drawn.nodes.size(); ++i) {
+    if (numbers[i] == no_number) continue;
+    const Eigen::Vector3d w = mirrors_.frame.direction(drawn.velocity_of(i));
+    for (int d = 0; d < mirrors_.frame.dimension; ++d) {
+      if (half.on_planes[i] >> d & 1) continue;
+      initial_.q[at] = half.y[i][d];
+      initial_.v[at++] = w[d];
     }
   }
-  system_ = make_mass_spring(network);
-  if (with_pins) system_ = std::make_unique<ConstrainedSystem>(std::move(system_), is_held);
 }
 
 Part::Motion Part::motion(std::size_t i, const Eigen::Ref<const Vec>& q,
                           const Eigen::Ref<const Vec>& v) const {
   const Image& image = images_[i];
   const Unknowns& unknowns = layout_[static_cast<std::size_t>(image.original)];
+  const Eigen::Vector3d signs = image.signs.diagonal();
   Eigen::Vector3d y = Eigen::Vector3d::Zero(), w = Eigen::Vector3d::Zero();
   if (unknowns.count == 3) {  // most nodes in space
-    y = image.signs.cwiseProduct(q.segment<3>(unknowns.first));
-    w = image.signs.cwiseProduct(v.segment<3>(unknowns.first));
+    y = signs.cwiseProduct(q.segment<3>(unknowns.first));
+    w = signs.cwiseProduct(v.segment<3>(unknowns.first));
   } else {
     for (int a = 0; a < unknowns.count; ++a) {
       const int d = unknowns.axis[static_cast<std::size_t>(a)];
-      y[d] = image.signs[d] * q[unknowns.first + a];
-      w[d] = image.signs[d] * v[unknowns.first + a];
+      y[d] = signs[d] * q[unknowns.first + a];
+      w[d] = signs[d] * v[unknowns.first + a];
     }
   }
   return {mirrors_.frame.from_point(y), mirrors_.frame.from_direction(w)};

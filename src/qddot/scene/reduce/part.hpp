@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +12,12 @@
 #include "qddot/scene/reduce/frame.hpp"
 #include "qddot/scene/reduce/mirror.hpp"
 #include "qddot/scene/reduce/reductions.hpp"
+#include "qddot/scene/reduce/signs.hpp"
 
 namespace qddot::reduce {
+
+struct DrawnEnergies;
+struct FoldedNodes;
 
 // A part's motion in the fewest unknowns q. Every node's position is an affine function of them,
 //   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c.
@@ -23,7 +28,11 @@ namespace qddot::reduce {
 // keep their digits wherever the part lies.
 class Part {
  public:
+  // It has no system yet.
   Part(const DrawnPart& drawn, int dimension, const Reductions& reductions);
+  // Makes the system, once and before all that asks for it. The springs of the drawn part are no
+  // longer needed then: two lists of them beside a system's would be most of the memory.
+  void make_system();
 
   const System& system() const { return *system_; }
   // The state of its unknowns at the start.
@@ -62,23 +71,28 @@ class Part {
   Moments moments(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v) const;
 
   // The difference from the drawn part at the start, with both numbers; nothing if all agrees. It
-  // compares nodes, masses, positions, velocities and energies, up to rounding and the tolerances
-  // of the reductions. Momenta and angular momenta follow from the first four. All agrees by
-  // construction: a defect of a reduction shows here. Call before take_system().
-  std::optional<std::string> difference_from(const DrawnPart& drawn) const;
+  // compares nodes, masses, positions, velocities and these energies of it, up to rounding and the
+  // tolerances of the reductions. Momenta and angular momenta follow from the first four. All
+  // agrees by construction: a defect of a reduction shows here. Call before take_system().
+  std::optional<std::string> difference_from(const DrawnPart& drawn,
+                                             const DrawnEnergies& energies) const;
 
  private:
   // A node as the image of an original, by the signs of its coordinates.
   struct Image {
     int original;
-    Eigen::Vector3d signs;
+    Signs signs;
   };
   // The places of an original's coordinates in q: `axis[a]` is unknown first + a.
   struct Unknowns {
-    Index first;
-    int count;
-    std::array<int, 3> axis;
+    int first;
+    std::int8_t count;
+    std::array<std::int8_t, 3> axis;
   };
+
+  void make_network(const DrawnPart& drawn, int dimension, bool with_pins);
+  void set_initial(const DrawnPart& drawn, const FoldedNodes& half, const std::vector<int>& numbers,
+                   Index size);
 
   struct Motion {
     Eigen::Vector3d x, v;
@@ -98,6 +112,8 @@ class Part {
   std::vector<double> masses_;    // of the nodes [kg]
   std::vector<Image> images_;     // likewise
   std::vector<Unknowns> layout_;  // of the originals
+  Network network_;               // until the system is made of it
+  std::vector<bool> is_held_;
   std::unique_ptr<System> system_;
   State initial_;
   bool is_straightened_ = false, is_loaded_ = false;

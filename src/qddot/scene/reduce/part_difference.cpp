@@ -13,16 +13,33 @@ std::string instead_of(const char* what, double reduced, double drawn, const cha
 
 }  // namespace
 
-std::optional<std::string> Part::difference_from(const DrawnPart& drawn) const {
-  const Tolerances tolerances = tolerances_of(drawn.x, drawn.v);
+DrawnEnergies::DrawnEnergies(const DrawnPart& drawn) {
+  const double farthest = largest_coordinate(drawn.x);
+  tolerances = tolerances_of(farthest, largest_coordinate(drawn.v));
+  DrawnKinetic masses(tolerances);
+  for (std::size_t i = 0; i < drawn.x.size(); ++i) masses.add(drawn.mass[i], drawn.velocity_of(i));
+  kinetic = masses.sum();
+  DrawnPotential all(drawn.gravity, tolerances, farthest);
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    const auto [a, b] = drawn.springs.ends(e);
+    all.add(drawn.springs.law(e),
+            (drawn.x[static_cast<std::size_t>(b)] - drawn.x[static_cast<std::size_t>(a)]).norm());
+  }
+  for (std::size_t i = 0; i < drawn.x.size(); ++i) {
+    all.add(drawn.mass[i], drawn.x[i], drawn.load_of(i));
+  }
+  potential = all.sum();
+}
+
+std::optional<std::string> Part::difference_from(const DrawnPart& drawn,
+                                                 const DrawnEnergies& energies) const {
+  const Tolerances& tolerances = energies.tolerances;
   if (auto where = places_differ(drawn, tolerances.place, tolerances.speed)) return where;
   if (auto mass = masses_differ(drawn)) return mass;
-  const BoundedEnergy t = kinetic_of(drawn.v, drawn.mass, tolerances);
+  const BoundedEnergy &t = energies.kinetic, &v = energies.potential;
   if (const double own = system_->kinetic(initial_.v); differs(t, own)) {
     return instead_of("the kinetic energy at the start", own, t.value, "J");
   }
-  const BoundedEnergy v =
-      potential_of(drawn.springs, drawn.x, drawn.mass, drawn.gravity, drawn.load, tolerances);
   if (const double own = system_->potential(initial_.q); differs(v, own)) {
     return instead_of("the potential energy at the start", own, v.value, "J");
   }
@@ -41,7 +58,7 @@ std::optional<std::string> Part::places_differ(const DrawnPart& drawn, double to
     if (off > tolerance) {
       return fmt::format("node {} would start {:.3g} m from its place", drawn.nodes[i], off);
     }
-    const double speed_off = (start.v - drawn.v[i]).norm();
+    const double speed_off = (start.v - drawn.velocity_of(i)).norm();
     if (speed_off > speed_tolerance) {
       return fmt::format("node {} would start with a velocity off by {:.3g} m/s", drawn.nodes[i],
                          speed_off);

@@ -1,5 +1,7 @@
 #include "qddot/scene/reduce/start_check.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "qddot/scene/reduce/as_drawn.hpp"
@@ -26,21 +28,27 @@ void require_drawn_start(const Model& model, const Pieces& pieces, const Scene& 
   }
   const State& start = model.initial();
   const std::vector<Node> nodes = model.expand(start);
-  std::vector<Eigen::Vector3d> x, v;
-  std::vector<double> mass;
-  std::vector<Eigen::Vector3d> load;
+  double farthest = 0, fastest = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (places[i] != (nodes[i].pinned ? 0 : 1)) {
       throw defect(fmt::format("node {} has {} places", i, places[i]));
     }
-    x.push_back(nodes[i].position);
-    v.push_back(nodes[i].velocity);
-    mass.push_back(nodes[i].pinned ? 0 : nodes[i].mass);
-    load.push_back(nodes[i].acting_load());
+    farthest = std::max(farthest, nodes[i].position.lpNorm<Eigen::Infinity>());
+    fastest = std::max(fastest, nodes[i].velocity.lpNorm<Eigen::Infinity>());
   }
-  const Tolerances tolerances = tolerances_of(x, v);
-  const BoundedEnergy t = kinetic_of(v, mass, tolerances);
-  const BoundedEnergy p = potential_of(scene.springs, x, mass, scene.gravity, load, tolerances);
+  const Tolerances tolerances = tolerances_of(farthest, fastest);
+  DrawnKinetic kinetic(tolerances);
+  DrawnPotential potential(scene.gravity, tolerances, farthest);
+  for (const Spring& spring : scene.springs) {
+    potential.add(spring.law,
+                  (nodes[spring.nodes[1]].position - nodes[spring.nodes[0]].position).norm());
+  }
+  for (const Node& node : nodes) {
+    const double mass = node.pinned ? 0 : node.mass;
+    kinetic.add(mass, node.velocity);
+    potential.add(mass, node.position, node.acting_load());
+  }
+  const BoundedEnergy t = kinetic.sum(), p = potential.sum();
   if (differs(t, model.kinetic(start)))
     throw defect(energy_instead_of(model.kinetic(start), t.value));
   if (differs(p, model.potential(start)))

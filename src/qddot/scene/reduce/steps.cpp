@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "qddot/model/block_diagonal_system.hpp"
+#include "qddot/scene/reduce/as_drawn.hpp"
 #include "qddot/scene/reduce/part_members.hpp"
 #include "qddot/scene/reduce/pieces.hpp"
 #include "qddot/scene/reduce/springs.hpp"
@@ -19,11 +20,11 @@ std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spr
                            const Eigen::Vector3d& gravity, int dimension) {
   std::vector<bool> is_on_line(nodes.size(), dimension == 1);
   if (dimension == 1) return is_on_line;
-  for (const PartMembers& members : parts_of(nodes, springs)) {
-    DrawnPart drawn = drawn_part(members, nodes, springs, gravity);
+  for (PartMembers& members : parts_of(nodes, springs)) {
+    DrawnPart drawn = drawn_part(std::move(members), nodes, springs, gravity);
     let_fall(drawn);  // a part stays on its line when it falls, whether that is reduced or not
     if (frame_of(drawn, dimension).dimension > 1) continue;
-    for (const std::size_t node : members.nodes) is_on_line[node] = true;
+    for (std::size_t i = 0; i < drawn.free; ++i) is_on_line[drawn.nodes[i]] = true;
   }
   return is_on_line;
 }
@@ -38,22 +39,26 @@ class Steps {
 
  private:
   void leave_out_pins();
-  void merge(std::vector<Spring>& springs);
-  void condense(std::vector<Spring>& springs);
-  void leave_out_static_springs(const std::vector<Spring>& springs);
-  std::vector<PartMembers> divide(const std::vector<Spring>& springs);
-  void build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs);
+  void name_stiff();
+  void merge();
+  void condense();
+  void leave_out_static_springs();
+  std::vector<PartMembers> divide();
+  void build(std::vector<PartMembers> parts);
   // The part as its motion is integrated; nothing if it rests in its falling frame.
-  std::optional<DrawnPart> moving_part(const PartMembers& members,
-                                       const std::vector<Spring>& springs);
+  std::optional<DrawnPart> moving_part(PartMembers members);
   // The part with all reductions that leave its start as drawn.
-  Part faithful_part(const DrawnPart& drawn);
+  Part faithful_part(DrawnPart& drawn);
   void report(Reduction reduction, std::string what) {
     pieces_.findings.push_back({reduction, std::move(what)});
   }
 
+  // The springs so far: the scene's own until a step changes them.
+  const std::vector<Spring>& springs() const { return changed_ ? *changed_ : scene_.springs; }
+
   const Scene& scene_;
   const Reductions& reductions_;
+  std::optional<std::vector<Spring>> changed_{};
   Pieces pieces_{.nodes = scene_.nodes, .dimension = scene_.dimension};
   std::size_t resting_ = 0;  // parts that rest in their fall
 };
@@ -63,13 +68,21 @@ Pieces Steps::taken() {
     if (node.pinned) node.velocity.setZero();
   }
   if (reductions_.has(Reduction::pins)) leave_out_pins();
-  std::vector<Spring> springs = scene_.springs;
-  for (Spring& spring : springs) spring.stiff = is_stiff(spring.law, scene_.stiff_above);
-  if (reductions_.has(Reduction::duplicates)) merge(springs);
-  if (reductions_.has(Reduction::massless)) condense(springs);
-  leave_out_static_springs(springs);
-  build(divide(springs), springs);
+  name_stiff();
+  if (reductions_.has(Reduction::duplicates)) merge();
+  if (reductions_.has(Reduction::massless)) condense();
+  leave_out_static_springs();
+  build(divide());
   return std::move(pieces_);
+}
+
+void Steps::name_stiff() {
+  const auto is_named = [&](const Spring& spring) {
+    return spring.stiff == is_stiff(spring.law, scene_.stiff_above);
+  };
+  if (std::ranges::all_of(scene_.springs, is_named)) return;
+  changed_ = scene_.springs;
+  for (Spring& spring : *changed_) spring.stiff = is_stiff(spring.law, scene_.stiff_above);
 }
 
 void Steps::leave_out_pins() {
@@ -78,20 +91,21 @@ void Steps::leave_out_pins() {
   if (pins > 0) report(Reduction::pins, pinned_sentence(pins));
 }
 
-void Steps::merge(std::vector<Spring>& springs) {
-  const std::size_t before = springs.size();
-  springs = merged_springs(springs);
-  if (springs.size() < before) {
-    report(Reduction::duplicates, merged_sentence(before - springs.size(), springs.size()));
-  }
+void Steps::merge() {
+  const std::size_t before = springs().size();
+  std::optional<std::vector<Spring>> merged = merged_springs(springs(), pieces_.nodes.size());
+  if (!merged) return;
+  changed_ = std::move(merged);
+  report(Reduction::duplicates, merged_sentence(before - springs().size(), springs().size()));
 }
 
-void Steps::condense(std::vector<Spring>& springs) {
+void Steps::condense() {
   if (std::ranges::none_of(pieces_.nodes, [](const Node& n) { return !n.pinned && n.mass == 0; }))
     return;
+  if (!changed_) changed_ = scene_.springs;
   pieces_.series =
-      condense_series(pieces_.nodes, springs, scene_.stiff_above,
-                      on_lines(pieces_.nodes, springs, scene_.gravity, pieces_.dimension));
+      condense_series(pieces_.nodes, *changed_, scene_.stiff_above,
+                      on_lines(pieces_.nodes, *changed_, scene_.gravity, pieces_.dimension));
   if (pieces_.series.empty()) return;
   std::vector<std::size_t> condensed;
   for (const Series& series : pieces_.series) {
@@ -101,22 +115,22 @@ void Steps::condense(std::vector<Spring>& springs) {
   report(Reduction::massless, condensed_sentence(condensed, pieces_.series.size()));
 }
 
-void Steps::leave_out_static_springs(const std::vector<Spring>& springs) {
-  for (const auto& [ends, law, holds, stiff] : springs) {
+void Steps::leave_out_static_springs() {
+  for (const auto& [ends, law, holds, stiff] : springs()) {
     const Node &a = pieces_.nodes[ends[0]], &b = pieces_.nodes[ends[1]];
     if (a.pinned && b.pinned) pieces_.static_energy += law.energy((b.position - a.position).norm());
   }
 }
 
-std::vector<PartMembers> Steps::divide(const std::vector<Spring>& springs) {
+std::vector<PartMembers> Steps::divide() {
   std::vector<bool> is_condensed(pieces_.nodes.size(), false);
   for (const Series& series : pieces_.series) {
     for (const auto& joint : series.joints) is_condensed[joint.node] = true;
   }
   std::vector<PartMembers> parts;
   std::vector<std::size_t> flying;
-  for (PartMembers& members : parts_of(pieces_.nodes, springs)) {
-    const std::size_t first = members.nodes.front();
+  for (PartMembers& members : parts_of(pieces_.nodes, springs())) {
+    const auto first = static_cast<std::size_t>(members.nodes.front());
     if (is_condensed[first]) continue;  // it is on no spring any more
     if (members.springs.empty() && reductions_.has(Reduction::free_flight)) {
       const Node& node = pieces_.nodes[first];
@@ -129,16 +143,16 @@ std::vector<PartMembers> Steps::divide(const std::vector<Spring>& springs) {
     }
   }
   if (!flying.empty()) report(Reduction::free_flight, flying_sentence(flying));
-  if (!reductions_.has(Reduction::parts)) return joined(parts);
+  if (!reductions_.has(Reduction::parts)) return joined(std::move(parts));
   if (parts.size() > 1) report(Reduction::parts, parts_sentence(parts.size()));
   return parts;
 }
 
-void Steps::build(const std::vector<PartMembers>& parts, const std::vector<Spring>& springs) {
+void Steps::build(std::vector<PartMembers> parts) {
   std::vector<std::unique_ptr<System>> systems;
   Index n = 0;
-  for (const PartMembers& members : parts) {
-    const std::optional<DrawnPart> drawn = moving_part(members, springs);
+  for (PartMembers& members : parts) {
+    std::optional<DrawnPart> drawn = moving_part(std::move(members));
     if (!drawn) continue;
     Part& part = pieces_.parts.emplace_back(faithful_part(*drawn));
     systems.push_back(part.take_system());
@@ -171,9 +185,8 @@ void Steps::build(const std::vector<PartMembers>& parts, const std::vector<Sprin
   }
 }
 
-std::optional<DrawnPart> Steps::moving_part(const PartMembers& members,
-                                            const std::vector<Spring>& springs) {
-  DrawnPart drawn = drawn_part(members, pieces_.nodes, springs, scene_.gravity);
+std::optional<DrawnPart> Steps::moving_part(PartMembers members) {
+  DrawnPart drawn = drawn_part(std::move(members), pieces_.nodes, springs(), scene_.gravity);
   drawn.offers_split = scene_.stiff_above.has_value();
   if (!reductions_.has(Reduction::falling)) return drawn;
   let_fall(drawn);
@@ -185,19 +198,27 @@ std::optional<DrawnPart> Steps::moving_part(const PartMembers& members,
   return {};
 }
 
-Part Steps::faithful_part(const DrawnPart& drawn) {
+Part Steps::faithful_part(DrawnPart& drawn) {
+  const DrawnEnergies energies(drawn);
   Reductions reductions = reductions_;
-  Part part(drawn, pieces_.dimension, reductions);
+  const auto with_these = [&] {
+    if (drawn.springs.size() == 0) drawn.springs = drawn_springs(drawn, pieces_.nodes, springs());
+    Part part(drawn, pieces_.dimension, reductions);
+    drawn.springs = {};
+    part.make_system();
+    return part;
+  };
+  Part part = with_these();
   for (const Reduction suspect :
        {Reduction::mirror, Reduction::dimension, Reduction::constant_stiffness}) {
     if (!reductions.has(suspect)) continue;
-    const auto difference = part.difference_from(drawn);
+    const auto difference = part.difference_from(drawn, energies);
     if (!difference) return part;
     report(suspect, mistaken_sentence(*difference));
     reductions = reductions.without(suspect);
-    part = Part(drawn, pieces_.dimension, reductions);
+    part = with_these();
   }
-  if (const auto difference = part.difference_from(drawn)) throw defect(*difference);
+  if (const auto difference = part.difference_from(drawn, energies)) throw defect(*difference);
   return part;
 }
 
