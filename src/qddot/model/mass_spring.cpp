@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "qddot/model/capabilities.hpp"
+#include "qddot/model/compact_links.hpp"
 #include "qddot/model/directions.hpp"
 #include "qddot/model/in_tension.hpp"
 #include "qddot/model/kernels/springs_by_node.hpp"
@@ -108,19 +109,23 @@ class MassSpring final : public CapableSystem {
     if (links_are_in_lists_) return false;  // K is made already
     const VecView q = at;
     sums.setZero(size());
-    const auto add = [&](const auto& spring, const Point& d, int node, double times) {
-      const Point rows = times * spring_stiffness(spring.law, d).cwiseAbs().rowwise().sum();
-      layout_.add(rows, node, sums);
+    const auto rows = [](const SpringLaw& law, const Point& d) -> Point {
+      return spring_stiffness(law, d).cwiseAbs().rowwise().sum();
     };
-    const auto add_link = [&](const auto& link, const Point& mirror) {
-      const Point d = mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
-      // In its own block and in that with the other end.
-      for (const int node : {link.i, link.j}) add(link, d, node, 2);
+    const auto add_link = [&](int i, int j, const Point& mirror, const SpringLaw& law) {
+      const Point d = mirror.cwiseProduct(layout_.at(q, j)) - layout_.at(q, i);
+      // In the node's own block and in that with the other end.
+      const Point both = 2 * rows(law, d);
+      layout_.add(both, i, sums);
+      layout_.add(both, j, sums);
     };
-    for (const auto& link : network_.links) add_link(link, Point::Ones());
-    for (const auto& link : network_.image_links) add_link(link, link.mirror.template head<D>());
+    links_.for_each(
+        [&](int i, int j, const SpringLaw& law) { add_link(i, j, Point::Ones(), law); });
+    for (const auto& link : network_.image_links)
+      add_link(link.i, link.j, link.mirror.template head<D>(), link.law);
     for (const auto& anchor : network_.anchors)
-      add(anchor, anchor.point.template head<D>() - layout_.at(q, anchor.i), anchor.i, 1);
+      layout_.add(rows(anchor.law, anchor.point.template head<D>() - layout_.at(q, anchor.i)),
+                  anchor.i, sums);
     return true;
   }
 
@@ -196,8 +201,8 @@ class MassSpring final : public CapableSystem {
     }
     note_laws(network);
     if (network.offers_split) offer_split(network, forces);
+    links_ = CompactLinks(network.links);
     network_ = {.dimension = D,
-                .links = std::move(network.links),
                 .anchors = std::move(network.anchors),
                 .image_links = std::move(network.image_links)};
   }
@@ -244,22 +249,28 @@ class MassSpring final : public CapableSystem {
   // of many nodes never do. Any thread may ask.
   const SpringLists<D>& lists() const {
     std::call_once(lists_made_, [&] {
-      if (!springs_) springs_.emplace(network_, layout_);
+      if (!springs_) springs_.emplace(whole_network(), layout_);
     });
     return *springs_;
   }
   const ForStiffness& for_stiffness() const {
     std::call_once(for_stiffness_made_, [&] {
+      const Network whole = whole_network();
       ForStiffness& own =
-          for_stiffness_.emplace(ForStiffness{{network_, layout_, lists()}, std::nullopt});
-      if (by_node_) own.columns.emplace(network_, layout_, *by_node_, own.blocks.pattern());
+          for_stiffness_.emplace(ForStiffness{{whole, layout_, lists()}, std::nullopt});
+      if (by_node_) own.columns.emplace(whole, layout_, *by_node_, own.blocks.pattern());
       // The lists hold the same springs.
       const std::unique_lock lock(links_in_use_);
       links_are_in_lists_ = true;
-      network_.links = {};
+      links_ = {};
       network_.image_links = {};
     });
     return *for_stiffness_;
+  }
+  Network whole_network() const {
+    Network whole = network_;
+    whole.links = links_.links();
+    return whole;
   }
 
   bool keeps_directions() const { return !directions_.empty(); }
@@ -307,10 +318,11 @@ class MassSpring final : public CapableSystem {
   bool has_quartic_ = false;
   std::optional<SpringsByNode<D>> by_node_;
   std::optional<Split> split_;
-  // The springs that lists and K are made of, its links only until then.
-  mutable Network network_;
+  // The springs that lists and K are made of; links and image links only until then.
+  mutable CompactLinks links_;
+  mutable Network network_;  // without the links
   mutable bool links_are_in_lists_ = false;
-  mutable std::shared_mutex links_in_use_;  // of the two above
+  mutable std::shared_mutex links_in_use_;  // of the three above
   mutable std::once_flag lists_made_, for_stiffness_made_;
   mutable std::optional<SpringLists<D>> springs_;  // from the start without by_node_
   mutable std::optional<ForStiffness> for_stiffness_;

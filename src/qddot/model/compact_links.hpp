@@ -1,0 +1,45 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "qddot/model/kernels/neighbours.hpp"
+#include "qddot/model/mass_spring.hpp"
+
+namespace qddot {
+
+// The ends and laws of a network's links in little memory: 12 bytes a link in place of 40, and each
+// law once that was seen shortly before.
+class CompactLinks {
+ public:
+  CompactLinks() = default;
+  explicit CompactLinks(const std::vector<Network::Link>& links) {
+    ends_.reserve(links.size());
+    kernels::LawNumbers numbers(laws_);
+    for (const auto& link : links) ends_.push_back({link.i, link.j, numbers.number(link.law)});
+  }
+
+  // Calls see(i, j, law) for each link.
+  template <class See>
+  void for_each(const See& see) const {
+    for (const auto& [i, j, law] : ends_) see(i, j, laws_[law]);
+  }
+
+  // The links again; nothing else of them was kept.
+  std::vector<Network::Link> links() const {
+    std::vector<Network::Link> links;
+    links.reserve(ends_.size());
+    for_each([&](int i, int j, const SpringLaw& law) { links.push_back({i, j, law}); });
+    return links;
+  }
+
+ private:
+  struct Ends {
+    int i, j, law;
+  };
+
+  std::vector<Ends> ends_;
+  std::vector<SpringLaw> laws_;
+};
+
+}  // namespace qddot
