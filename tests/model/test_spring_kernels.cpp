@@ -171,6 +171,18 @@ BOOST_AUTO_TEST_CASE(a_spring_of_no_length_has_no_direction) {
   }
 }
 
+// Every other slice has no springs.
+BOOST_AUTO_TEST_CASE(nodes_without_springs_are_not_pulled) {
+  for (const int dimension : {2, 3}) {
+    constexpr int nodes = 12 * 2 * slice_rows;
+    Network network{.dimension = dimension, .node_mass = Vec::Ones(nodes)};
+    for (int i = 0; i + 2 * slice_rows < nodes; ++i) {
+      if (i / slice_rows % 2 == 0) network.links.push_back({i, i + 2 * slice_rows, {100, 0.5}});
+    }
+    check_against_plain(network, Vec::LinSpaced(dimension * nodes, 0, 40));
+  }
+}
+
 // Weights are read for one slice alone if they are the same for all nodes, and node by node if one
 // differs. Its force is its weight where no spring pulls.
 BOOST_AUTO_TEST_CASE(every_node_has_its_own_weight) {

@@ -110,17 +110,20 @@ void list_terms(const NeighbourSlices& slices, Rings& result) {
   std::vector<std::array<int, 2>> terms;
   for (int slice = 0; slice < slices.count(); ++slice) {
     const Slice &begin = slices.slices[slice], &end = slices.slices[slice + 1];
-    SliceTerms own{-1, 0};
+    int own = -1;
     terms.clear();
-    bool has_all = begin.gather == end.gather;
+    bool has_all = begin.gather == end.gather && begin.shift < end.shift;
     for (int s = begin.shift; s < end.shift; ++s) {
       has_all &= result.uses[s].kind != RingUse::none;
       terms.push_back({slices.shifts[s], result.uses[s].kind});
-      if (result.uses[s].kind == RingUse::finds) own.reach = std::min(own.reach, slices.shifts[s]);
+      if (result.uses[s].kind == RingUse::finds) {
+        const int rows = -slices.shifts[s];
+        result.reach = std::max(result.reach, (rows + slice_rows - 1) / slice_rows);
+      }
     }
     if (has_all) {
       const auto [found, is_new] = known.try_emplace(terms, std::ssize(result.terms));
-      own.first = found->second;
+      own = found->second;
       for (int s = begin.shift; is_new && s < end.shift; ++s) {
         const auto [kind, number] = result.uses[s];
         const Ring& ring = result.rings[number];
@@ -128,7 +131,7 @@ void list_terms(const NeighbourSlices& slices, Rings& result) {
         result.terms.push_back({shift, kind == RingUse::finds ? shift : 0, ring.mask, ring.begin});
       }
     }
-    result.slice_terms.push_back(own);
+    result.first_term.push_back(own);
   }
 }
 

@@ -19,13 +19,14 @@ struct Rings {
   std::vector<RingJob> jobs;
   std::vector<int> first_job;
   std::vector<RingTerm> terms;
-  std::vector<SliceTerms> slice_terms;
+  std::vector<int> first_term;
+  int reach = 0;    // slices
   int numbers = 0;  // in the memory of all rings
 
   // Everything as kernels read it; valid as long as this.
   RingTable table() const {
-    return {rings.data(),     uses.data(),  jobs.data(),
-            first_job.data(), terms.data(), slice_terms.data()};
+    return {rings.data(), uses.data(),       jobs.data(), first_job.data(),
+            terms.data(), first_term.data(), reach};
   }
 };
 

@@ -55,21 +55,15 @@ struct RingTerm {
   int shift, from, mask, begin;
 };
 
-// The terms of a slice of whose slots all are in rings: terms[first] and the following, one for
-// each slot. They read nothing of rows before its first row + reach. first < 0: some slot has no
-// ring.
-struct SliceTerms {
-  int first, reach;
-};
-
 // The rings of a network; see Rings.
 struct RingTable {
   const Ring* rings;
-  const RingUse* uses;       // of the slots of one shift
-  const RingJob* jobs;       // slice after slice
-  const int* first_job;      // of each slice, and the end
-  const RingTerm* terms;     // each list of different terms once
-  const SliceTerms* slices;  // of each slice
+  const RingUse* uses;    // of the slots of one shift
+  const RingJob* jobs;    // slice after slice
+  const int* first_job;   // of each slice, and the end
+  const RingTerm* terms;  // each list of different terms once
+  const int* first_term;  // of each slice, whose slots have a term each; -1: some has no ring
+  int reach;              // the largest number of slices between a slot that reads and its source
 };
 
 // Slices are summed in blocks of this many where there are rings.

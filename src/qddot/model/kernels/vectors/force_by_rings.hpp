@@ -71,12 +71,12 @@ template <int D, int count>
   });
 }
 
-// f of a slice with slots that have no ring, or whose ring begins before row `known`.
+// f of a slice with slots that have no ring.
 template <int D, int law_vectors, Roots roots>
 [[gnu::always_inline]] inline void sum_slice(const SpringTable& springs, const RingTable& rings,
-                                             int slice, int part, int known,
-                                             const Positions& positions, const double* memory,
-                                             const Offset& offset, double* f) {
+                                             int slice, int part, const Positions& positions,
+                                             const double* memory, const Offset& offset,
+                                             double* f) {
   const int row = slice * slice_rows + part * lanes;
   Lanes sum[D], x[D];
   for (int a = 0; a < D; ++a) x[a] = load(coordinate(positions, a, row));
@@ -86,15 +86,15 @@ template <int D, int law_vectors, Roots roots>
     for (int s = springs.slices[slice].shift; s < springs.slices[slice + 1].shift; ++s, ++law) {
       const int shifted = row + springs.shifts[s];
       const RingUse use = rings.uses[s];
-      const int from = use.kind == RingUse::finds ? shifted : row;
       const auto difference = [&](int, Lanes(&d)[D]) __attribute__((always_inline)) {
         for (int a = 0; a < D; ++a) d[a] = load(coordinate(positions, a, shifted)) - x[a];
       };
-      if (use.kind == RingUse::none || from < known) {
+      if (use.kind == RingUse::none) {
         add_slots<D, law_vectors, in_use, 1>(springs, law, part, range, sum, difference);
         continue;
       }
       const Ring ring = rings.rings[use.ring];
+      const int from = use.kind == RingUse::finds ? shifted : row;
       const Lanes ratio = load(memory + ring.begin + (from & ring.mask));
       Lanes d[D];
       difference(0, d);
@@ -105,17 +105,13 @@ template <int D, int law_vectors, Roots roots>
   put<D>(springs, slice, part, sum, offset, f);
 }
 
-// f of slices [from, end); rings hold nothing of the rows before.
+// f of slices [from, end). Jobs begin where the rings' first readers need them.
 template <int D, int law_vectors, Roots roots>
 void sum_forces_by_rings(const SpringTable& springs, const RingTable& rings,
                          const Positions& positions, double* memory, const Offset& offset,
                          double* f, int from, int end) {
-  const int known = from * slice_rows;
-  const auto terms_of = [&](int slice) {
-    const auto [first, reach] = rings.slices[slice];
-    return slice * slice_rows + reach >= known ? first : -1;
-  };
-  for (int begin = from; begin < end; begin += slices_of_block) {
+  const int first_of_jobs = from > rings.reach ? from - rings.reach : 0;
+  for (int begin = first_of_jobs; begin < end; begin += slices_of_block) {
     const int block_end = begin + slices_of_block < end ? begin + slices_of_block : end;
     const RingJob *jobs = rings.jobs + rings.first_job[begin],
                   *jobs_end = rings.jobs + rings.first_job[block_end];
@@ -124,19 +120,19 @@ void sum_forces_by_rings(const SpringTable& springs, const RingTable& rings,
         do_jobs<D, law_vectors, in_use>(springs, jobs, jobs_end, part, positions, memory, range);
       }
     });
-    for (int slice = begin; slice < block_end;) {
-      const int first = terms_of(slice);
+    for (int slice = begin > from ? begin : from; slice < block_end;) {
+      const int first = rings.first_term[slice];
       if (first < 0) {
         for (int part = 0; part < parts_of_slice; ++part) {
-          sum_slice<D, law_vectors, roots>(springs, rings, slice, part, known, positions, memory,
-                                           offset, f);
+          sum_slice<D, law_vectors, roots>(springs, rings, slice, part, positions, memory, offset,
+                                           f);
         }
         ++slice;
         continue;
       }
       const int count = springs.slices[slice + 1].shift - springs.slices[slice].shift;
       const RingTerm *terms = rings.terms + first, *terms_end = terms + count;
-      const bool has_twin = slice + 1 < block_end && terms_of(slice + 1) == first;
+      const bool has_twin = slice + 1 < block_end && rings.first_term[slice + 1] == first;
       for (int part = 0; part < parts_of_slice; ++part) {
         if (has_twin) {
           sum_terms<D, 2>(springs, terms, terms_end, slice, part, positions, memory, offset, f);
