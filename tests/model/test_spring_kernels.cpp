@@ -201,6 +201,24 @@ BOOST_AUTO_TEST_CASE(every_node_has_its_own_weight) {
   }
 }
 
+// Weights repeat after D unknowns here, too, but they begin with the second axis.
+BOOST_AUTO_TEST_CASE(a_node_with_fewer_unknowns_shifts_no_weights) {
+  for (const int dimension : {2, 3}) {
+    Grid g = grid(dimension, 21, in_order(21 * 21));
+    g.network.gravity = {1, -2, 3};
+    g.network.zero_coordinates.assign(21 * 21, 0);
+    g.network.zero_coordinates[0] = 1;
+    g.q[0] = 0;
+    check_against_plain(g.network, g.q.tail(g.q.size() - 1));
+    for (auto& link : g.network.links) link.law = {.stiffness = 0};
+    const Vec f =
+        force_at(*make_mass_spring(g.network, Forces::by_vectors), Vec(g.q.tail(g.q.size() - 1)));
+    for (Index i = 0; i < f.size(); ++i) {
+      BOOST_TEST(f[i] == g.network.gravity[(i + 1) % dimension]);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(they_are_the_same_to_the_bit_with_any_number_of_threads) {
   const int before = omp_get_max_threads();
   for (const auto& order : {in_order(150 * 150), shuffled(150 * 150)}) {

@@ -11,11 +11,14 @@ template <int D>
 SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout, const Vec& weight)
     : weight_(weight) {
   const int nodes = static_cast<int>(layout.nodes());
-  for (Index i = 0; i < std::ssize(slice_weight_) && weight.size() >= D; ++i) {
-    slice_weight_[static_cast<std::size_t>(i)] = weight[i % D];
+  // If a node has fewer unknowns, slices begin at other axes than the first.
+  const bool are_full = nodes > 0 && weight.size() == D * Index{nodes};
+  has_same_weights_ = are_full && weight.tail(weight.size() - D) == weight.head(weight.size() - D);
+  if (has_same_weights_) {
+    for (std::size_t i = 0; i < slice_weight_.size(); ++i) {
+      slice_weight_[i] = weight[static_cast<Index>(i % D)];
+    }
   }
-  has_same_weights_ =
-      weight.size() >= D && weight.tail(weight.size() - D) == weight.head(weight.size() - D);
   std::map<std::array<double, D>, int> points;
   std::vector<int> anchored_to;  // the point of each anchor
   for (const auto& anchor : network.anchors) {
