@@ -7,7 +7,7 @@
 namespace qddot::inline kit {
 namespace {
 
-// What a function of OpenBLAS without arguments says; empty if it is not there.
+// The text that a function of OpenBLAS without arguments returns; empty if it is not there.
 std::string say(const char* function) {
   using Say = char*();
   auto* const found = reinterpret_cast<Say*>(::dlsym(RTLD_DEFAULT, function));

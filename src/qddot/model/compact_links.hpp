@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "qddot/model/kernels/neighbours.hpp"
 #include "qddot/model/mass_spring.hpp"
+#include "qddot/model/repeated_values.hpp"
 
 namespace qddot {
 
@@ -15,8 +15,7 @@ class CompactLinks {
   CompactLinks() = default;
   explicit CompactLinks(const std::vector<Network::Link>& links) {
     ends_.reserve(links.size());
-    kernels::LawNumbers numbers(laws_);
-    for (const auto& link : links) ends_.push_back({link.i, link.j, numbers.number(link.law)});
+    for (const auto& link : links) ends_.push_back({link.i, link.j, laws_.number(link.law)});
   }
 
   // Calls see(i, j, law) for each link.
@@ -39,7 +38,7 @@ class CompactLinks {
   };
 
   std::vector<Ends> ends_;
-  std::vector<SpringLaw> laws_;
+  RepeatedValues<SpringLaw> laws_;
 };
 
 }  // namespace qddot

@@ -255,9 +255,11 @@ class MassSpring final : public CapableSystem {
   }
   const ForStiffness& for_stiffness() const {
     std::call_once(for_stiffness_made_, [&] {
+      // The lists come first: one whole network is held at a time.
+      const SpringLists<D>& springs = lists();
       const Network whole = whole_network();
       ForStiffness& own =
-          for_stiffness_.emplace(ForStiffness{{whole, layout_, lists()}, std::nullopt});
+          for_stiffness_.emplace(ForStiffness{{whole, layout_, springs}, std::nullopt});
       if (by_node_) own.columns.emplace(whole, layout_, *by_node_, own.blocks.pattern());
       // The lists hold the same springs.
       const std::unique_lock lock(links_in_use_);

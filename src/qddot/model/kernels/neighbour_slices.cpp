@@ -6,7 +6,6 @@
 #include <numeric>
 #include <optional>
 
-#include "qddot/model/kernels/shared_vectors.hpp"
 #include "qddot/model/kernels/slot_plan.hpp"
 
 namespace qddot::kernels {
@@ -32,6 +31,9 @@ void sort_by_place(std::vector<Neighbour>& row) {
   }
 }
 
+// One number of each of a slot's laws.
+using LawVector = std::array<double, slice_rows>;
+
 class Slicer {
  public:
   Slicer(const Neighbours& neighbours, int extras, const std::vector<int>& order)
@@ -44,7 +46,7 @@ class Slicer {
     result_.gathered.resize((result_.places + slice_rows - 1) / slice_rows);
     for (int row = 0; row < nodes; ++row) place_[order[row]] = row;
     std::iota(place_.begin() + nodes, place_.end(), rows);
-    for (const SpringLaw& law : neighbours.laws) {
+    for (const SpringLaw& law : neighbours.laws.values()) {
       if (law.quartic > 0) result_.law_vectors = 3;
       if (law.rest_length > 0) result_.law_vectors = std::max(result_.law_vectors, 2);
     }
@@ -64,7 +66,8 @@ class Slicer {
       if (cost(result_) + ends_left / slice_rows >= limit) return {};
     }
     begin_slice();
-    result_.laws = laws_.numbers();
+    result_.laws = Eigen::Map<const Vec>(laws_.values().data()->data(),
+                                         slice_rows * std::ssize(laws_.values()));
     return std::move(result_);
   }
 
@@ -108,18 +111,19 @@ class Slicer {
       const int e = slot.neighbour[t];
       laws[t] = e < 0 ? &none : &neighbours_.laws[rows_[t][e].law];
     }
-    const auto numbers = [&](int vector, double SpringLaw::*number) {
-      return vector < result_.law_vectors ? laws_.place([&](int t) { return laws[t]->*number; })
-                                          : 0;
+    const auto place = [&](int vector, double SpringLaw::*number) {
+      if (vector >= result_.law_vectors) return 0;
+      LawVector numbers;
+      for (int t = 0; t < slice_rows; ++t) numbers[t] = laws[t]->*number;
+      return slice_rows * laws_.number(numbers);
     };
-    result_.slot_laws.push_back({numbers(0, &SpringLaw::stiffness),
-                                 numbers(1, &SpringLaw::rest_length),
-                                 numbers(2, &SpringLaw::quartic)});
+    result_.slot_laws.push_back({place(0, &SpringLaw::stiffness), place(1, &SpringLaw::rest_length),
+                                 place(2, &SpringLaw::quartic)});
   }
 
   const Neighbours& neighbours_;
   std::vector<int> place_;  // of each point
-  SharedVectors laws_;
+  RepeatedValues<LawVector> laws_;
   RowNeighbours rows_;
   NeighbourSlices result_;
 };

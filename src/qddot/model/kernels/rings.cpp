@@ -142,7 +142,7 @@ Rings rings_of(const NeighbourSlices& slices) {
   if (slices.law_vectors == 1) return result;  // tau/l is the stiffness
   const ShiftSlots slots(slices);
   share(slices, slots, result);
-  // Where few slots read, it is faster to compute several side by side.
+  // Rings cost time if few slots read: several slots side by side are faster then.
   const auto reads = std::ranges::count(result.uses, RingUse::finds, &RingUse::kind);
   if (reads < worth_rings * static_cast<double>(slices.slot_laws.size())) return {};
   list_jobs(slices, slots, result);

@@ -109,9 +109,9 @@ class MirrorSearch {
     plane.offset = low + (high - low) / 2;
   }
 
-  // Whether a sample of the nodes have images. What some of them lack, all need not be asked. The
-  // images that are looked for one by one may be off from those of others by several times `near`:
-  // each reflection of an orbit adds its own. So a sample fails only where all would fail.
+  // Whether a sample of the nodes have images; if not, the search among all of them would fail. An
+  // image found through an orbit may be off by several times `near`, as each reflection adds its
+  // own. So the sample is given more room, and fails only if all would.
   bool may_mirror(const Plane& plane, const Closeness& near) const {
     constexpr std::size_t sample = 1000;
     constexpr double wider = 16;

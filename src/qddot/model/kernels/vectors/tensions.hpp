@@ -34,7 +34,7 @@ template <int law_vectors, Roots roots, int count>
     estimated_roots(l2, l, half_inverse);
     unroll<count>([&]<int i>() __attribute__((always_inline)) {
       const Lanes t = tension<law_vectors>(l[i], law[i]);
-      // Where the processor divides, one quotient of four is estimated: it is busy with the others.
+      // The processor divides three of four and is busy with them, so one quotient is estimated.
       constexpr bool divides = roots == Roots::estimated_root && (i > 0 || count < 4);
       ratio[i] = divides ? t / l[i] : estimated_quotient(t, l[i], half_inverse[i]);
     });
