@@ -1,6 +1,7 @@
 #pragma once
 
 #include "qddot/integrators/counts.hpp"
+#include "qddot/model/beside_force.hpp"
 #include "qddot/model/capabilities.hpp"
 
 namespace qddot {
@@ -26,6 +27,17 @@ class CountedSystem {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
     part.force(at, f);
+  }
+  // The same with work beside it (see System::force_beside). The time of that work is not a
+  // force's, so a timed run does it before and after.
+  double force_beside(const At& at, MutableVec f, BesideForce& beside) {
+    if (!clock_) {
+      ++counts.force_evaluations;
+      return system_.force_beside(at, f, beside);
+    }
+    beside.before(0, system_.size());
+    force(at, f);
+    return beside.after(0, system_.size());
   }
   // DiscreteGradient::mean_force, counted as a force; for methods that need it.
   void mean_force(const At& a, const At& b, MutableVec f) {

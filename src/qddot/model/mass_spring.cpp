@@ -61,6 +61,11 @@ class MassSpring final : public CapableSystem {
         f);
   }
 
+  double force_beside(const At& at, MutableVec f, BesideForce& beside) const override {
+    if (by_node_) return by_node_->sum_forces(at.q, f, beside);
+    return System::force_beside(at, f, beside);
+  }
+
   void mean_force(const At& start, const At& end, MutableVec f) const override {
     const VecView &a = start.q, &b = end.q;
     if (by_node_) return by_node_->sum_mean_forces(a, b, f);

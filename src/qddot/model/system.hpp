@@ -67,6 +67,7 @@ struct At {
   VecView q, v;
 };
 
+class BesideForce;
 class SplitStiffness;
 class DiscreteGradient;
 class Laplacian;
@@ -107,6 +108,9 @@ class System {
   // Writes the force f [N], which is -dV/dq where it depends on positions alone; f: n, sized by the
   // caller.
   virtual void force(const At& at, MutableVec f) const = 0;
+  // The same, with `beside` called for parts of the unknowns, whose q it may make. f depends on t
+  // and q alone. Returns the sum of beside.after() in the order of the unknowns.
+  virtual double force_beside(const At& at, MutableVec f, BesideForce& beside) const;
   // Whether f does not depend on v, so that f = -dV/dq.
   virtual bool is_conservative() const { return true; }
   // Whether f, V and K do not depend on t.

@@ -22,8 +22,10 @@ void combine(const double* x, double d, const double* v, double c, const Eigen::
                                             static_cast<int>(b.size()), out, n);
 }
 
-kernels::Masses masses(const Mass& m) {
-  return {m.data(), m.inverse().size() > 0 ? m.inverse().data() : nullptr, m.is_uniform()};
+// The masses of the unknowns from the first one on.
+kernels::Masses masses(const Mass& m, Index first = 0) {
+  if (m.inverse().size() == 0) return {m.data() + first, nullptr, false};
+  return {m.data() + first, m.inverse().data() + (m.is_uniform() ? 0 : first), m.is_uniform()};
 }
 
 }  // namespace
@@ -36,11 +38,12 @@ void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m, M
   kernels::vector_kernels().add_quotient(x.data(), c, f.data(), masses(m), out.data(), x.size());
 }
 
-void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
-                    MutableVec w) {
+void kick_and_drift(const Motion& motion, Index first, Index end, double c0, double c, double h,
+                    MutableVec q_next, MutableVec w) {
   const auto& [q, v, f, m] = motion;
-  kernels::vector_kernels().kick_and_drift(q.data(), v.data(), f.data(), masses(m), c0, c, h,
-                                           q_next.data(), w.data(), q.size());
+  kernels::vector_kernels().kick_and_drift(q.data() + first, v.data() + first, f.data() + first,
+                                           masses(m, first), c0, c, h, q_next.data() + first,
+                                           w.data() + first, end - first);
 }
 
 void divide(const VecView& f, const Mass& m, MutableVec out) {
@@ -86,9 +89,10 @@ double squared_norm(const VecView& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
 }
 
-double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const Mass& m) {
-  return kernels::vector_kernels().squared_norm_of_kicked(v.data(), c, f.data(), masses(m),
-                                                          v.size());
+double squared_norm_of_kicked(const VecView& v, Index first, Index end, double c, const VecView& f,
+                              const Mass& m) {
+  return kernels::vector_kernels().squared_norm_of_kicked(v.data() + first, c, f.data() + first,
+                                                          masses(m, first), end - first);
 }
 
 double squared_error(const VecView& x, double rtol, const VecView& y, double atol) {

@@ -12,13 +12,17 @@ namespace qddot {
 void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out);
 // out = x + c f/m, entry by entry.
 void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m, MutableVec out);
-// Two kicks and a drift: w = (v + c0 f/m) + c f/m, `q_next` = q + h w.
+// Two kicks and a drift of the unknowns [first, end): w = (v + c0 f/m) + c f/m, `q_next` = q + h w.
 struct Motion {
   const Vec &q, &v, &f;
   const Mass& m;
 };
-void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
-                    MutableVec w);
+void kick_and_drift(const Motion& motion, Index first, Index end, double c0, double c, double h,
+                    MutableVec q_next, MutableVec w);
+inline void kick_and_drift(const Motion& motion, double c0, double c, double h, MutableVec q_next,
+                           MutableVec w) {
+  kick_and_drift(motion, 0, motion.q.size(), c0, c, h, q_next, w);
+}
 // out = f/m and out = a b, entry by entry.
 void divide(const VecView& f, const Mass& m, MutableVec out);
 void divide(const VecView& f, const VecView& m, MutableVec out);
@@ -44,8 +48,12 @@ void step_by_history(const HistoryStep& step, const VecView& f, const VecView& c
                      const VecView& d, MutableVec u_0, MutableVec d_next, MutableVec q_next);
 // |x|^2
 double squared_norm(const VecView& x);
-// |v + c f/m|^2
-double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const Mass& m);
+// |v + c f/m|^2, of all unknowns or of [first, end).
+double squared_norm_of_kicked(const VecView& v, Index first, Index end, double c, const VecView& f,
+                              const Mass& m);
+inline double squared_norm_of_kicked(const VecView& v, double c, const VecView& f, const Mass& m) {
+  return squared_norm_of_kicked(v, 0, v.size(), c, f, m);
+}
 // The sum of (x_i/(rtol |y_i| + atol))^2: errors x of y in units of the tolerance, squared.
 double squared_error(const VecView& x, double rtol, const VecView& y, double atol);
 

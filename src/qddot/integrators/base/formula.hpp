@@ -47,6 +47,9 @@ class Formula {
 
   // The functions of CountedSystem.
   void force(const At& at, MutableVec f) { run_.counted().force(at, f); }
+  double force_beside(const At& at, MutableVec f, BesideForce& beside) {
+    return run_.counted().force_beside(at, f, beside);
+  }
   void force(const System& part, const At& at, MutableVec f) { run_.counted().force(part, at, f); }
   void mean_force(const At& a, const At& b, MutableVec f) { run_.counted().mean_force(a, b, f); }
   void stiffness(const At& at, SymmetricMatrix& k) { run_.counted().stiffness(at, k); }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "qddot/integrators/base/kicks_and_drift.hpp"
+
 namespace qddot {
 
 std::vector<double> mirrored(std::vector<double> half, std::size_t size) {
@@ -43,10 +45,11 @@ void KickDrift::step_from_kick(const X& now, double h, X& next) {
   const X* from = &now;
   double t = now.t, late = now.late;
   for (std::size_t i = 0; i < drifts.size(); ++i) {
-    kick_and_drift({from->q, from->v, from->f, system().mass()}, late, kicks[i] * h, drifts[i] * h,
-                   next.q, next.v);
+    KicksAndDrift work({from->q, from->v, from->f, system().mass()},
+                       {late, kicks[i] * h, drifts[i] * h}, next.q, next.v);
+    if (i + 1 == drifts.size()) work.see_speed(kicks.back() * h, next.f);
     t += drifts[i] * h;
-    force({t, next.q}, next.f);
+    next.squared_speed = force_beside({t, next.q}, next.f, work);
     from = &next;
     late = 0;
   }
@@ -101,8 +104,7 @@ void KickDrift::show(const X& x, bool, State& state) const {
 }
 
 double KickDrift::squared_speed(const X& next) const {
-  if (next.late == 0) return squared_norm(next.v);
-  return squared_norm_of_kicked(next.v, next.late, next.f, system().mass());
+  return next.late == 0 ? squared_norm(next.v) : next.squared_speed;
 }
 
 std::unique_ptr<Stepper> create_splitting(SystemRun& run) {

@@ -26,8 +26,9 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 class KickDrift final : public Formula {
  public:
   struct X : State {
-    Vec f;            // at q, if kicks are first
-    double late = 0;  // the kick that v lacks [s]
+    Vec f;                     // at q, if kicks are first
+    double late = 0;           // the kick that v lacks [s]
+    double squared_speed = 0;  // |v|^2 with that kick, if it is not 0
   };
 
   KickDrift(SystemRun& run, const Splitting& splitting);

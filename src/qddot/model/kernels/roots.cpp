@@ -56,7 +56,7 @@ class Sample {
     const auto start = Clock::now();
     kernels.place(springs, q_.data(), positions, 0, slices_.count());
     for (int i = 0; i < evaluations; ++i)
-      kernels.force(springs, positions, nullptr, {offset_.data(), nullptr}, f_.data(), 0,
+      kernels.force(springs, positions, nullptr, false, {offset_.data(), nullptr}, f_.data(), 0,
                     slices_.count());
     return std::chrono::duration<double>(Clock::now() - start).count();
   }

@@ -123,9 +123,10 @@ constexpr int kinds_of_roots = 3;
 struct SpringKernels {
   // Copies the rows' coordinates at q to their places in the positions.
   void (*place)(const SpringTable&, const double* q, const Positions&, int from, int end);
-  // f = offset + the forces of the rows' springs. `rings`: memory for all rings.
-  void (*force)(const SpringTable&, const Positions&, double* rings, const Offset&, double* f,
-                int from, int end);
+  // f = offset + the forces of the rows' springs. `rings`: memory for all rings. It holds what
+  // slices before `from` have stored if the call before this one ended there (`continues`).
+  void (*force)(const SpringTable&, const Positions&, double* rings, bool continues, const Offset&,
+                double* f, int from, int end);
   // Adds the energies of the rows' springs to `sums`: sums[r] is for row r of every slice. A spring
   // between two rows counts twice.
   void (*energy)(const SpringTable&, const Positions&, double* sums, int from, int end);

@@ -4,8 +4,10 @@
 #include <omp.h>
 #include <vector>
 
+#include "qddot/model/beside_force.hpp"
 #include "qddot/model/kernels/neighbour_slices.hpp"
 #include "qddot/model/kernels/rings.hpp"
+#include "qddot/model/kernels/slice_parts.hpp"
 #include "qddot/model/kernels/spring_kernels.hpp"
 #include "qddot/model/layout.hpp"
 #include "qddot/model/mass_spring.hpp"
@@ -34,7 +36,11 @@ class SpringsByNode {
   // It differs from a sum spring by spring by rounding only. It is the same to the last bit for any
   // number of threads, kind of roots and width of vectors (except v2, without fused products). q,
   // f: n. May be called from any thread.
-  void sum_forces(const VecView& q, MutableVec f) const;
+  void sum_forces(const VecView& q, MutableVec f) const { sum_forces(q, f, nullptr); }
+  // The same with work beside it; see System::force_beside. q, f: n.
+  double sum_forces(const VecView& q, MutableVec f, BesideForce& beside) const {
+    return sum_forces(q, f, &beside);
+  }
 
   // V of all springs [J], with springs to fixed points counted half; alike at every width of
   // vectors.
@@ -49,7 +55,7 @@ class SpringsByNode {
 
  private:
   struct Image {
-    int source;  // a place
+    int place, source;  // rows and extra points are at places
     std::array<double, D> signs;
   };
   // Fewer slots than these are done before a second thread has begun.
@@ -63,21 +69,33 @@ class SpringsByNode {
   Positions memory(int which = 0) const;
   // The same with all of them at q.
   Positions placed(const VecView& q, int which = 0) const;
-  // Places the points that are no nodes; after all slices.
-  void place_extras(const Positions& positions) const;
+  // Places the points that are no nodes: those that are fixed, and the images of parts [from, end),
+  // whose slices must have their places.
+  void place_points(const Positions& positions) const;
+  void place_images(const Positions& positions, int from, int end) const;
+  void place_extra(const Positions& positions, int place, const std::array<double, D>& x) const;
+
+  double sum_forces(const VecView& q, MutableVec f, BesideForce* beside) const;
+  bool uses_threads() const;
+  // Fills parts_ and what belongs to them.
+  void divide_into_parts();
 
   const SpringKernels* kernels_;
   const Vec& weight_;
   bool has_same_weights_ = false;
   std::array<double, D * slice_rows> slice_weight_{};
   std::vector<std::array<double, D>> points_;
-  std::vector<Image> images_;  // extras are the points, then these
+  std::vector<Image> images_;  // in the order of their sources
   NeighbourSlices slices_;
   Rings rings_;
   RingTable ring_table_{};
   std::vector<int> gathered_points_;  // where the points of the slices' gathers begin
   std::vector<int> unknowns_;         // D of each row
   std::vector<Order> order_;          // of the slices
+  SliceParts parts_;
+  std::vector<int> first_image_;  // of each part, and the end
+  // The unknowns of each part, and the end; empty if a part's unknowns do not follow one another.
+  std::vector<int> first_unknown_;
 };
 
 template <int D>
@@ -86,10 +104,10 @@ void SpringsByNode<D>::for_slices(const VecView& q, const Action& action) const 
   const Positions positions = memory();
   const SpringTable springs = table();
   const int count = slices_.count();
-  const Index slots = std::ssize(slices_.shifts) + std::ssize(slices_.gathers) / slice_rows;
-  if (slots < slots_worth_threads || omp_in_parallel() || omp_get_max_threads() == 1) {
+  place_points(positions);
+  if (!uses_threads()) {
     kernels_->place(springs, q.data(), positions, 0, count);
-    place_extras(positions);
+    place_images(positions, 0, parts_.count());
     return action(positions, 0, count);
   }
 #pragma omp parallel
@@ -100,7 +118,7 @@ void SpringsByNode<D>::for_slices(const VecView& q, const Action& action) const 
     kernels_->place(springs, q.data(), positions, from, end);
 #pragma omp barrier
 #pragma omp single
-    place_extras(positions);
+    place_images(positions, 0, parts_.count());
     action(positions, from, end);
   }
 }

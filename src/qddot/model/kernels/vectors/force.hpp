@@ -61,29 +61,29 @@ void sum_forces_apart(const SpringTable& springs, const Positions& positions, co
 
 // Tables are copied: nobody else's address leads to these, so no store of a vector can change them.
 template <int D, int law_vectors, Roots roots>
-void sum_forces(SpringTable springs, Positions positions, double* memory, Offset offset, double* f,
-                int from, int end) {
+void sum_forces(SpringTable springs, Positions positions, double* memory, bool continues,
+                Offset offset, double* f, int from, int end) {
   if constexpr (D == 1) {
     sum_forces_on_line<law_vectors>(springs, positions, offset, f, from, end);
   } else if (law_vectors > 1 && springs.rings) {
     const RingTable rings = *springs.rings;
-    sum_forces_by_rings<D, law_vectors, roots>(springs, rings, positions, memory, offset, f, from,
-                                               end);
+    sum_forces_by_rings<D, law_vectors, roots>(springs, rings, positions, memory, continues, offset,
+                                               f, from, end);
   } else {
     sum_forces_apart<D, law_vectors, roots>(springs, positions, offset, f, from, end);
   }
 }
 
 template <int D, Roots roots>
-void force(const SpringTable& springs, const Positions& positions, double* rings,
+void force(const SpringTable& springs, const Positions& positions, double* rings, bool continues,
            const Offset& offset, double* f, int from, int end) {
   switch (springs.law_vectors) {
     case 1:
-      return sum_forces<D, 1, roots>(springs, positions, rings, offset, f, from, end);
+      return sum_forces<D, 1, roots>(springs, positions, rings, continues, offset, f, from, end);
     case 2:
-      return sum_forces<D, 2, roots>(springs, positions, rings, offset, f, from, end);
+      return sum_forces<D, 2, roots>(springs, positions, rings, continues, offset, f, from, end);
     default:
-      return sum_forces<D, 3, roots>(springs, positions, rings, offset, f, from, end);
+      return sum_forces<D, 3, roots>(springs, positions, rings, continues, offset, f, from, end);
   }
 }
 

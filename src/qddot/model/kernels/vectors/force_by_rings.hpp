@@ -108,9 +108,9 @@ template <int D, int law_vectors, Roots roots>
 // f of slices [from, end). Jobs begin where the rings' first readers need them.
 template <int D, int law_vectors, Roots roots>
 void sum_forces_by_rings(const SpringTable& springs, const RingTable& rings,
-                         const Positions& positions, double* memory, const Offset& offset,
-                         double* f, int from, int end) {
-  const int first_of_jobs = from > rings.reach ? from - rings.reach : 0;
+                         const Positions& positions, double* memory, bool continues,
+                         const Offset& offset, double* f, int from, int end) {
+  const int first_of_jobs = continues ? from : from > rings.reach ? from - rings.reach : 0;
   for (int begin = first_of_jobs; begin < end; begin += slices_of_block) {
     const int block_end = begin + slices_of_block < end ? begin + slices_of_block : end;
     const RingJob *jobs = rings.jobs + rings.first_job[begin],
