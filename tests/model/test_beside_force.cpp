@@ -87,9 +87,9 @@ Network random_strip(std::mt19937& random, int dimension, int nodes, int reach, 
     if (i != j && j < nodes) network.links.push_back({i, j, law()});
   };
   for (int i = 0; i < nodes; ++i) {
-    link(i, i + 1);
+    if (far == 0) link(i, i + 1);
     link(i, i + number(2, reach));
-    // Slices have their rows by number of springs.
+    // Without lines, rows are sorted by number of springs.
     for (int e = 0; i % 13 == 0 && e < 12; ++e) link(i, i + number(1, reach));
   }
   for (int i = 0; i < far; ++i) link(number(0, nodes - 1), number(0, nodes - 1));

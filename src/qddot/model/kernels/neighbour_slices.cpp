@@ -13,8 +13,7 @@ namespace {
 
 // The measured cost of a gathering slot, in slots of one shift.
 constexpr double cost_of_gather = 1.6;
-// Rows are sorted within windows of this size; across more, positions are far apart in memory.
-constexpr int window = 256;
+constexpr int window = sorted_rows;
 
 // Sorts neighbours, equal ones in the order they had. Most nodes have few, which are moved one by
 // one without any memory.

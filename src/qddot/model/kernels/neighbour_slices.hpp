@@ -36,6 +36,9 @@ struct NeighbourSlices {
   int count() const { return static_cast<int>(slices.size()) - 1; }
 };
 
+// Rows are sorted within windows of this size; across more, positions are far apart in memory.
+constexpr int sorted_rows = 256;
+
 // N nodes; points N, ..., N + extras - 1 are no nodes. Rows are in the nodes' order, or sorted by
 // number of springs within windows if that leaves fewer slots.
 NeighbourSlices slice_neighbours(const Neighbours& neighbours, int extras);

@@ -6,6 +6,8 @@ namespace qddot::kernels {
 namespace {
 
 constexpr int slices_of_part = 8 * slices_of_block;
+// So a part has the nodes of as many numbers that follow one another.
+static_assert(slices_of_part * slice_rows % sorted_rows == 0);
 // Fewer slices are one part, as they are of one thread.
 constexpr int fewest_for_parts = 512;
 

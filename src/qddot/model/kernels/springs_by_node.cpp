@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "qddot/model/kernels/roots.hpp"
 
@@ -114,19 +115,16 @@ void SpringsByNode<D>::divide_into_parts() {
     const int image = place - first_extra - points;
     return image < 0 ? -1 : sources[static_cast<std::size_t>(image)];
   });
-  bool are_in_order = true;
   int unknown = 0;
   for (const auto& [begin, end, first_read, read_end] : parts_.parts) {
     const auto image = std::ranges::lower_bound(images_, begin * slice_rows, {}, &Image::source);
     first_image_.push_back(static_cast<int>(image - images_.begin()));
     first_unknown_.push_back(unknown);
-    for (int e = D * begin * slice_rows; e < D * end * slice_rows; ++e) {
-      if (unknowns_[e] >= 0) are_in_order &= unknowns_[e] == unknown++;
-    }
+    for (int e = D * begin * slice_rows; e < D * end * slice_rows; ++e)
+      unknown += unknowns_[e] >= 0;
   }
   first_image_.push_back(static_cast<int>(images_.size()));
   first_unknown_.push_back(unknown);
-  if (!are_in_order) first_unknown_.clear();
 }
 
 template <int D>
@@ -154,16 +152,14 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
   const SpringTable springs = table();
   const Positions positions = memory();
   const int count = parts_.count();
-  const bool is_by_parts = beside && !first_unknown_.empty();
   thread_local Vec of_parts;
   if (of_parts.size() < count) of_parts.resize(count);
   double* const sums = of_parts.data();
   place_points(positions);
-  if (beside && !is_by_parts) beside->before(0, q.size());
 
   const auto place = [&](int from, int end) {
     if (from == end) return;
-    if (is_by_parts) beside->before(first_unknown_[from], first_unknown_[end]);
+    if (beside) beside->before(first_unknown_[from], first_unknown_[end]);
     kernels_->place(springs, q.data(), positions, parts_.parts[from].begin,
                     parts_.parts[end - 1].end);
     place_images(positions, from, end);
@@ -179,7 +175,7 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
       if (placed < read_end) place(std::exchange(placed, read_end), read_end);
       kernels_->force(springs, positions, memory.data(), first > from, offset(), f.data(),
                       parts_.parts[first].begin, parts_.parts[last].end);
-      for (int p = first; is_by_parts && p <= last; ++p) {
+      for (int p = first; beside && p <= last; ++p) {
         sums[p] = beside->after(first_unknown_[p], first_unknown_[p + 1]);
       }
     }
@@ -202,7 +198,6 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
     }
   }
   if (!beside) return 0;
-  if (!is_by_parts) return beside->after(0, q.size());
   double total = 0;
   for (int p = 0; p < count; ++p) total += sums[p];
   return total;

@@ -93,9 +93,8 @@ class SpringsByNode {
   std::vector<int> unknowns_;         // D of each row
   std::vector<Order> order_;          // of the slices
   SliceParts parts_;
-  std::vector<int> first_image_;  // of each part, and the end
-  // The unknowns of each part, and the end; empty if a part's unknowns do not follow one another.
-  std::vector<int> first_unknown_;
+  std::vector<int> first_image_;    // of each part, and the end
+  std::vector<int> first_unknown_;  // likewise; a part's unknowns follow one another
 };
 
 template <int D>
