@@ -107,7 +107,7 @@ Network random_strip(std::mt19937& random, int dimension, int nodes, int reach, 
 
 }  // namespace
 
-// Of 4,096 nodes and more forces are summed in parts, of some more in several threads.
+// Forces are summed in parts from 4,096 nodes on, and in several threads from some more on.
 BOOST_AUTO_TEST_CASE(parts_are_made_before_they_are_read) {
   std::mt19937 random(5);
   for (const int dimension : {1, 2, 3}) {

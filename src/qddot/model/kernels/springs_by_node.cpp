@@ -188,7 +188,7 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
       const Index thread = omp_get_thread_num(), threads = omp_get_num_threads();
       const int from = static_cast<int>(count * thread / threads),
                 end = static_cast<int>(count * (thread + 1) / threads);
-      // What other threads read is placed before all sums.
+      // Places that other threads read are made before all sums.
       const int head = from == 0 ? 0 : std::clamp(parts_.parts[from - 1].read_end, from, end);
       const int tail = end == count ? end : std::clamp(parts_.parts[end].first_read, head, end);
       place(from, head);
