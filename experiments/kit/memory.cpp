@@ -45,13 +45,20 @@ double left_in_control_group() {
 
 }  // namespace
 
+void keep_freed_memory() {
+  constexpr int most = std::numeric_limits<int>::max();  // [bytes]
+  mallopt(M_MMAP_THRESHOLD, most);
+  mallopt(M_TRIM_THRESHOLD, most);
+}
+
 double allocated_memory() {
   const auto info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
 double free_memory() {
-  return std::min({left_in_machine(), left_in_address_space(), left_in_control_group()});
+  const auto kept = static_cast<double>(mallinfo2().fordblks);
+  return kept + std::min({left_in_machine(), left_in_address_space(), left_in_control_group()});
 }
 
 std::string out_of_memory() {

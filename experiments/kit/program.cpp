@@ -239,6 +239,7 @@ int Program::run(int argc, char** argv, const std::function<int()>& work) {
       word("--progress", "auto", "how progress is shown on stderr, one of auto, plain, none")
           .last();
   command_line_.assign(argv, argv + argc);
+  keep_freed_memory();
   try {
     Interruptible run(name_);
     try {
