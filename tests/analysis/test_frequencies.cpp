@@ -210,6 +210,23 @@ BOOST_AUTO_TEST_CASE(largest_frequency_is_just_below_the_true_one_and_the_bound)
   }
 }
 
+BOOST_AUTO_TEST_CASE(row_sums_without_k_are_those_of_k_where_each_block_has_one_spring) {
+  // The cloth has fixed points and, beside its mirror, nodes with fewer unknowns.
+  for (const bool has_mirror : {false, true}) {
+    Reductions reductions = Reductions::all_directions();
+    if (!has_mirror) reductions = reductions.without(Reduction::mirror);
+    const Model model(stretched(draw("cloth", {{"nodes", 9}}), 1.1), reductions);
+    const Vec& q = model.initial().q;
+    Vec sums;
+    BOOST_TEST_REQUIRE(model.system().bound_row_sums(q, sums));
+    const Vec expected = dense(stiffness_at(model.system(), q)).cwiseAbs().rowwise().sum();
+    BOOST_TEST((expected.array() <= (1 + 20 * eps) * sums.array()).all());
+    const Vec beyond = (sums - expected).cwiseAbs().cwiseQuotient(sums);
+    const auto equal = (beyond.array() <= 20 * eps).count();
+    BOOST_TEST((has_mirror ? equal > q.size() / 2 : equal == q.size()));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(frequencies_of_one_and_two_masses_are_those_of_their_closed_forms) {
   const Oscillator o;
   // A spring of l0 = k = 0 has w^2 = 3 c x^2 / m; two free masses of 2 kg on 36 N/m have w^2 =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
@@ -16,11 +17,15 @@ constexpr double relative_error = 1e-4;
 // Up to this size, Lanczos' basis would be the whole space.
 constexpr Index most_dense = 40;
 
+// M^-1/2 over the bound; a massless unknown has none.
+Vec scaling(const Vec& mass, double bound) {
+  return (mass.array() > 0).select(mass.cwiseSqrt().cwiseInverse() / bound, Vec::Zero(mass.size()));
+}
+
 // -M^-1/2 K M^-1/2 over the square of the bound, so that no eigenvalue is above 1. A massless
 // unknown has no stiffness here.
 void scale(const Vec& mass, double bound, SymmetricMatrix& k) {
-  const Vec factors =
-      (mass.array() > 0).select(mass.cwiseSqrt().cwiseInverse() / bound, Vec::Zero(k.rows()));
+  const Vec factors = scaling(mass, bound);
   for (Index j = 0; j < k.cols(); ++j) {
     for (SymmetricMatrix::InnerIterator entry(k, j); entry; ++entry)
       entry.valueRef() *= -factors[entry.row()] * factors[j];
@@ -42,6 +47,42 @@ SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
   return k;
 }
 
+// Products with that matrix. It is not made where the system can multiply without K: for a million
+// nodes that takes as long as a thousand forces.
+class ScaledStiffness {
+ public:
+  ScaledStiffness(const System& system, const Vec& q) : system_(system), q_(q) {
+    require_stiffness(system);
+    scaled_.setZero(q.size());
+    product_.resize(q.size());
+    if (system.multiply_stiffness(q, scaled_, product_)) {
+      bound_ = frequency_bound(system, q);
+      if (bound_ > 0) factors_ = scaling(system.mass(), bound_);
+      return;
+    }
+    k_ = stiffness_at(system, q);
+    Vec row_sums;
+    bound_ = frequency_bound(system.mass(), *k_, row_sums);
+    if (bound_ > 0 && std::isfinite(bound_)) scale(system.mass(), bound_, *k_);
+  }
+
+  // A bound of w_max [rad/s]. There are products if it is finite and above 0.
+  double bound() const { return bound_; }
+  Vec operator*(const Vec& x) {
+    if (k_) return k_->selfadjointView<Eigen::Lower>() * x;
+    scaled_ = factors_.cwiseProduct(x);
+    system_.multiply_stiffness(q_, scaled_, product_);
+    return -factors_.cwiseProduct(product_);
+  }
+
+ private:
+  const System& system_;
+  const Vec& q_;
+  double bound_ = 0;
+  std::optional<SymmetricMatrix> k_;
+  Vec factors_, scaled_, product_;  // without K
+};
+
 }  // namespace
 
 double largest_frequency(const System& system, const Vec& q) {
@@ -59,21 +100,19 @@ double largest_frequency(const System& system, const Vec& q) {
 }
 
 double frequency_at_least(const System& system, const Vec& q, Index products) {
-  SymmetricMatrix k = stiffness_at(system, q);
-  Vec row_sums;
-  const double bound = frequency_bound(system.mass(), k, row_sums);
+  ScaledStiffness a(system, q);
+  const double bound = a.bound();
   if (bound == 0 || std::isinf(bound)) return bound;
-  scale(system.mass(), bound, k);
   // Lanczos' recurrence from a random vector; rounding makes no value larger.
-  const Index steps = std::min(products, k.rows());
-  Vec before = Vec::Zero(k.rows()), now(k.rows());
+  const Index steps = std::min(products, q.size());
+  Vec before = Vec::Zero(q.size()), now(q.size());
   std::minstd_rand random(1);
   for (double& x : now) x = static_cast<double>(random()) / random.max() - 0.5;
   now.normalize();
   Vec diagonal(steps), beside = Vec::Zero(steps);
   Index taken = 0;
   for (double last = 0; taken < steps; ++taken) {
-    Vec next = k.selfadjointView<Eigen::Lower>() * now - last * before;
+    Vec next = a * now - last * before;
     diagonal[taken] = next.dot(now);
     next -= diagonal[taken] * now;
     last = next.norm();
@@ -82,7 +121,7 @@ double frequency_at_least(const System& system, const Vec& q, Index products) {
       break;
     }
     beside[taken] = last;
-    before = now;
+    before.swap(now);
     now = next / last;
   }
   if (!diagonal.head(taken).allFinite()) return 0;
@@ -100,9 +139,10 @@ double quick_frequency(const System& system, const Vec& q) {
 }
 
 double frequency_bound(const System& system, const Vec& q) {
-  const SymmetricMatrix k = stiffness_at(system, q);
+  require_stiffness(system);
   Vec row_sums;
-  return frequency_bound(system.mass(), k, row_sums);
+  if (system.bound_row_sums(q, row_sums)) return bound_by(row_sums, system.mass());
+  return frequency_bound(system.mass(), stiffness_at(system, q), row_sums);
 }
 
 double frequency_bound(const Vec& mass, const SymmetricMatrix& k, Vec& row_sums) {
@@ -115,13 +155,6 @@ double frequency_bound(const Vec& mass, const SymmetricMatrix& k, Vec& row_sums)
     }
   }
   return bound_by(row_sums, mass);
-}
-
-double coarse_frequency_bound(const System& system, const Vec& q) {
-  Vec row_sums;
-  if (!system.bound_row_sums(q, row_sums)) return std::numeric_limits<double>::infinity();
-  constexpr double rounding = 1e-9;  // of long sums
-  return (1 + rounding) * bound_by(row_sums, system.mass());
 }
 
 }  // namespace qddot

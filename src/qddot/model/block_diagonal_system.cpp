@@ -68,6 +68,23 @@ bool BlockDiagonalSystem::bound_row_sums(const ConstVec& q, Vec& sums) const {
   return all;
 }
 
+bool BlockDiagonalSystem::multiply_stiffness(const ConstVec& q, const ConstVec& x,
+                                             MutableVec y) const {
+  bool all = true;
+  const VecView of = x;
+  for_each(blocks_, VecView(q), [&](const System& block, const At& own, Index first) {
+    const Index n = block.size();
+    all = all && block.multiply_stiffness(own.q, of.segment(first, n), y.segment(first, n));
+  });
+  return all;
+}
+
+Index BlockDiagonalSystem::stiffness_entries() const {
+  Index entries = 0;
+  for (const auto& block : blocks_) entries += block->stiffness_entries();
+  return entries;
+}
+
 SymmetricMatrix BlockDiagonalSystem::joined_patterns() const {
   SymmetricMatrix pattern(size(), size());
   Index nonzeros = 0;

@@ -27,6 +27,8 @@ class BlockDiagonalSystem final : public CapableSystem {
   const SymmetricMatrix& stiffness_pattern() const override;
   bool has_stiffness() const override;
   bool bound_row_sums(const ConstVec& q, Vec& sums) const override;
+  bool multiply_stiffness(const ConstVec& q, const ConstVec& x, MutableVec y) const override;
+  Index stiffness_entries() const override;
   bool stiffness_is_constant() const override;
 
   const SplitStiffness* split_stiffness() const override;

@@ -36,6 +36,15 @@ void ConstrainedSystem::mean_force(const At& a, const At& b, MutableVec f) const
   for (const Index i : unknowns_) f[i] = 0;
 }
 
+bool ConstrainedSystem::multiply_stiffness(const ConstVec& q, const ConstVec& x,
+                                           MutableVec y) const {
+  Vec moved = x;
+  for (const Index i : unknowns_) moved[i] = 0;
+  if (!system_->multiply_stiffness(q, moved, y)) return false;
+  for (const Index i : unknowns_) y[i] = 0;
+  return true;
+}
+
 void ConstrainedSystem::stiffness(const At& at, SymmetricMatrix& k) const {
   system_->stiffness(at, k);
   clear_held(k);

@@ -29,6 +29,8 @@ class ConstrainedSystem final : public CapableSystem {
   bool bound_row_sums(const ConstVec& q, Vec& sums) const override {
     return system_->bound_row_sums(q, sums);
   }
+  bool multiply_stiffness(const ConstVec& q, const ConstVec& x, MutableVec y) const override;
+  Index stiffness_entries() const override { return system_->stiffness_entries(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
 
   const SplitStiffness* split_stiffness() const override {

@@ -2,7 +2,6 @@
 
 #include <mutex>
 #include <optional>
-#include <shared_mutex>
 #include <stdexcept>
 
 #include "qddot/model/capabilities.hpp"
@@ -108,31 +107,24 @@ class MassSpring final : public CapableSystem {
   }
   bool has_stiffness() const override { return true; }
   bool stiffness_is_constant() const override { return linear_; }
-  // The blocks of springs are added by their absolute values: |sum B| <= sum |B|.
-  bool bound_row_sums(const ConstVec& at, Vec& sums) const override {
-    const std::shared_lock lock(links_in_use_);
-    if (links_are_in_lists_) return false;  // K is made already
-    const VecView q = at;
-    sums.setZero(size());
-    const auto rows = [](const SpringLaw& law, const Point& d) -> Point {
-      return spring_stiffness(law, d).cwiseAbs().rowwise().sum();
-    };
-    const auto add_link = [&](int i, int j, const Point& mirror, const SpringLaw& law) {
-      const Point d = mirror.cwiseProduct(layout_.at(q, j)) - layout_.at(q, i);
-      // In the node's own block and in that with the other end.
-      const Point both = 2 * rows(law, d);
-      layout_.add(both, i, sums);
-      layout_.add(both, j, sums);
-    };
-    links_.for_each(
-        [&](int i, int j, const SpringLaw& law) { add_link(i, j, Point::Ones(), law); });
-    for (const auto& link : network_.image_links)
-      add_link(link.i, link.j, link.mirror.template head<D>(), link.law);
-    for (const auto& anchor : network_.anchors)
-      layout_.add(rows(anchor.law, anchor.point.template head<D>() - layout_.at(q, anchor.i)),
-                  anchor.i, sums);
+  bool bound_row_sums(const ConstVec& q, Vec& sums) const override {
+    if (!by_node_) return false;  // so few have their K at once
+    sums.resize(size());
+    by_node_->sum_stiffness_rows(VecView(q), sums);
+    for (const auto& anchor : network_.anchors) {
+      const Point d = anchor.point.template head<D>() - layout_.at(VecView(q), anchor.i);
+      layout_.add(-spring_stiffness(anchor.law, d).cwiseAbs().rowwise().sum(), anchor.i, sums);
+    }
     return true;
   }
+
+  bool multiply_stiffness(const ConstVec& q, const ConstVec& x, MutableVec y) const override {
+    if (!by_node_) return false;
+    by_node_->multiply_stiffness(VecView(q), VecView(x), y);
+    return true;
+  }
+
+  Index stiffness_entries() const override { return entries_; }
 
   const SplitStiffness* split_stiffness() const override { return this; }
   const DiscreteGradient* discrete_gradient() const override { return this; }
@@ -206,6 +198,8 @@ class MassSpring final : public CapableSystem {
     }
     note_laws(network);
     if (network.offers_split) offer_split(network, forces);
+    entries_ = D * (D + 1) / 2 * layout_.nodes() +
+               D * D * (std::ssize(network.links) + std::ssize(network.image_links));
     links_ = CompactLinks(network.links);
     network_ = {.dimension = D,
                 .anchors = std::move(network.anchors),
@@ -267,8 +261,6 @@ class MassSpring final : public CapableSystem {
           for_stiffness_.emplace(ForStiffness{{whole, layout_, springs}, std::nullopt});
       if (by_node_) own.columns.emplace(whole, layout_, *by_node_, own.blocks.pattern());
       // The lists hold the same springs.
-      const std::unique_lock lock(links_in_use_);
-      links_are_in_lists_ = true;
       links_ = {};
       network_.image_links = {};
     });
@@ -325,11 +317,10 @@ class MassSpring final : public CapableSystem {
   bool has_quartic_ = false;
   std::optional<SpringsByNode<D>> by_node_;
   std::optional<Split> split_;
+  Index entries_ = 0;  // of K, or more where springs join the same nodes
   // The springs that lists and K are made of; links and image links only until then.
   mutable CompactLinks links_;
   mutable Network network_;  // without the links
-  mutable bool links_are_in_lists_ = false;
-  mutable std::shared_mutex links_in_use_;  // of the three above
   mutable std::once_flag lists_made_, for_stiffness_made_;
   mutable std::optional<SpringLists<D>> springs_;  // from the start without by_node_
   mutable std::optional<ForStiffness> for_stiffness_;

@@ -124,9 +124,17 @@ class System {
   // Writes K = df/dq [N/m] into `k`, which must have the pattern stiffness_pattern(). Throws
   // std::logic_error if the system computes no K.
   virtual void stiffness(const At& at, SymmetricMatrix& k) const;
-  // Writes bounds of the sums of |K_ij| over each row i at q [N/m], found without K, into `sums`
-  // (n) and returns true. Returns false if the system has none, or none that is cheaper than its K.
+  // Writes the sums of |K_ij| over each row i at q [N/m], or no less, found without K, into `sums`
+  // (n) and returns true. Returns false if the system has no way that is cheaper than its K.
   virtual bool bound_row_sums(const ConstVec&, Vec& /*sums*/) const { return false; }
+  // Writes K(q) x [N], found without K, into `y` and returns true; q, x, y: n. Returns false if the
+  // system has no way to it that is cheaper than its K.
+  virtual bool multiply_stiffness(const ConstVec& /*q*/, const ConstVec& /*x*/,
+                                  MutableVec /*y*/) const {
+    return false;
+  }
+  // The number of entries of K's pattern, or no less than that, without the pattern.
+  virtual Index stiffness_entries() const { return stiffness_pattern().nonZeros(); }
   // Whether K is the same at every q of the motion, so that the motion is linear.
   virtual bool stiffness_is_constant() const { return false; }
 

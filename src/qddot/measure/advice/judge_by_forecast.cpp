@@ -13,7 +13,7 @@
 namespace qddot::inline measure {
 namespace {
 
-constexpr double forces_a_bound = 17;  // the measured cost of frequency_bound
+constexpr double forces_a_bound = 4;  // the measured cost of frequency_bound for a network
 
 // The factor by which w_max grows over the path, from the growth of its bound at some places.
 double growth_of_frequency(const Model& model, const std::vector<State>& path, double bound,

@@ -165,7 +165,7 @@ bool Search::judge_in_closed_form(double accuracy) {
 
 // Whether the cost of implicit steps is known, or takes less than so many forces to find.
 bool Search::may_analyse(double forces) const {
-  const double entries = static_cast<double>(system_.stiffness_pattern().nonZeros());
+  const double entries = static_cast<double>(system_.stiffness_entries());
   return implicit_force_ || rules_.analysis * entries < forces * runs_.work_of_force();
 }
 
@@ -190,7 +190,7 @@ std::int64_t Search::forces_worth_implicit_steps(double accuracy) {
   const double most = rules_.short_cut * runs_.steps_of_verlet(),
                fewest = rules_.places * all.front()->order;
   // Factors have at least the entries of K.
-  const double entries = static_cast<double>(system_.stiffness_pattern().nonZeros());
+  const double entries = static_cast<double>(system_.stiffness_entries());
   if (!may_analyse(most) ||
       most < fewest * (rules_.implicit_force + rules_.entry * entries / runs_.work_of_force()))
     return 0;

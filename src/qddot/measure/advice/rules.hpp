@@ -45,7 +45,7 @@ struct Rules {
   // of a factorisation are faster than that.
   double implicit_force = 3, entry = 0.1, operation = 5e-4;
   // The analysis of factors takes for each entry of K as long as the force on so many unknowns.
-  double analysis = 10;
+  double analysis = 50;
 
   // The check of a run with fixed steps has an error that is expected to be smaller by this factor.
   double finer = 4;

@@ -191,8 +191,6 @@ std::string step_warning(const Method& method, const Options& options, const Mod
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   const double limit = linear_limit(method), h = options.step_size;
-  // A run without K is not to make one for this, which may take as long as many steps.
-  if (h * coarse_frequency_bound(system, q) <= limit) return "";
   if (h * frequency_bound(system, q) <= limit) return "";
   const double w = quick_frequency(system, q);
   if (h * w <= limit) return "";

@@ -136,6 +136,13 @@ struct SpringKernels {
   // Writes the rows' columns of K.
   void (*stiffness)(const SpringTable&, const Positions&, const StiffnessTable&, TensionPart,
                     double* values, int from, int end);
+  // y = offset + K x of the rows, with x as `moved` has it and zero at fixed points.
+  void (*stiffness_product)(const SpringTable&, const Positions&, const Positions& moved,
+                            const Offset&, double* y, int from, int end);
+  // sums = offset + the sums of |K_ij| over each row, and over blocks of fixed points, which K has
+  // not.
+  void (*stiffness_row_sums)(const SpringTable&, const Positions&, const Offset&, double* sums,
+                             int from, int end);
 };
 
 // Returns the version in use for 1, 2 or 3 dimensions; nullptr if it has no such roots.

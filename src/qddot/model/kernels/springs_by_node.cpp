@@ -218,6 +218,28 @@ void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b, Mutab
 }
 
 template <int D>
+Offset SpringsByNode<D>::no_offset(MutableVec numbers) {
+  static constexpr std::array<double, D * slice_rows> of_slice{};
+  numbers.setZero();
+  return {numbers.data(), of_slice.data()};
+}
+
+template <int D>
+void SpringsByNode<D>::multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const {
+  const Positions moved = placed(x, 1);
+  const int first = slices_.rows(), points = static_cast<int>(points_.size());
+  for (int place = first; place < first + points; ++place) place_extra(moved, place, {});
+  kernels_->stiffness_product(table(), placed(q, 0), moved, no_offset(y), y.data(), 0,
+                              slices_.count());
+}
+
+template <int D>
+void SpringsByNode<D>::sum_stiffness_rows(const VecView& q, MutableVec sums) const {
+  kernels_->stiffness_row_sums(table(), placed(q), no_offset(sums), sums.data(), 0,
+                               slices_.count());
+}
+
+template <int D>
 Positions SpringsByNode<D>::placed(const VecView& q, int which) const {
   const Positions positions = memory(which);
   place_points(positions);

@@ -48,6 +48,11 @@ class SpringsByNode {
   // f = weight + the springs' discrete gradients between a and b (see DiscreteGradient).
   void sum_mean_forces(const VecView& a, const VecView& b, MutableVec f) const;
 
+  // y = K(q) x without K, and the sums of |K_ij| over each row i. The latter count a spring to a
+  // fixed point as if that were a node. q, x, y, sums: n.
+  void multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const;
+  void sum_stiffness_rows(const VecView& q, MutableVec sums) const;
+
   // Calls action(positions at q, from, end) for slices [from, end) until all are done, in several
   // OpenMP threads if there are enough springs. The calls must not depend on each other.
   template <class Action>
@@ -65,6 +70,8 @@ class SpringsByNode {
   Offset offset() const {
     return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr};
   }
+  // Zeros, which are written to `numbers` (n) as well.
+  static Offset no_offset(MutableVec numbers);
   // Memory for all places: this thread's until the next call. There are two.
   Positions memory(int which = 0) const;
   // The same with all of them at q.

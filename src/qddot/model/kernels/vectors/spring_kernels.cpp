@@ -4,6 +4,7 @@
 #include "qddot/model/kernels/vectors/force.hpp"
 #include "qddot/model/kernels/vectors/place.hpp"
 #include "qddot/model/kernels/vectors/stiffness.hpp"
+#include "qddot/model/kernels/vectors/stiffness_rows.hpp"
 
 namespace qddot::kernels::QDDOT_LEVEL {
 namespace {
@@ -20,7 +21,9 @@ constexpr SpringKernels kernels() {
             .force = force<D, none_on_line>,
             .energy = energy<D, of_lengths>,
             .mean_force = mean_force<D, of_lengths>,
-            .stiffness = stiffness<D, of_lengths>};
+            .stiffness = stiffness<D, of_lengths>,
+            .stiffness_product = stiffness_product<D, of_lengths>,
+            .stiffness_row_sums = stiffness_row_sums<D, of_lengths>};
   } else {
     return {};
   }
