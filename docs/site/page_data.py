@@ -13,6 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "docs/data"
+SECOND = "second"  # the folder, in that of a study, of what another processor measured
 NOTHING = "–"  # where a table has no number
 
 
@@ -95,6 +96,19 @@ def command(study):
 def processor(study):
     """The processor on which a study was measured."""
     return record(study)["processor"]
+
+
+def measured(study):
+    """The names for rows(), record() and the others of a study and, where it was measured on a second
+    processor, of that."""
+    has_second = (DATA / study / SECOND / "study.json").exists()
+    return [study] + [f"{study}/{SECOND}"] * has_second
+
+
+def column(words, study):
+    """The head of a column of a study or of its second processor: with its name where there are two."""
+    name = study.removesuffix(f"/{SECOND}")
+    return words if len(measured(name)) == 1 else f"{processor(study)}: {words}"
 
 
 UNSAID = "\0"  # stands where made() has nothing to say, until render.py takes it out

@@ -6,6 +6,8 @@
                                    docs/data keeps: in results/repeated/NAME, and each figure is
                                    printed then and now
     ./run studies --again cloth    these from the start, interrupted or not, for docs/data
+    ./run studies --second bench   these for the pages' second column, on another processor than
+                                   docs/data's; --again as above
     ./run studies --list           what there is, and how long each took
     ./run studies --check          which are to be measured (status 1 where one is), and how many
                                    commits changed the code of the others since
@@ -154,12 +156,30 @@ def check(studies):
     return good
 
 
+def measure_on_second(parser, studies, again):
+    """Measures studies for the second column of pages, where this is another processor."""
+    if not studies:
+        parser.error("--second needs the names of studies")
+    for study in studies.values():
+        first = study.record and study.record["processor"]
+        if not first or first == processor():
+            why = f"was measured on this processor, {first}" if first else "has no first column yet"
+            parser.error(f"--second {study.name}: the study {why}")
+        if study.needs:
+            parser.error(f"--second {study.name}: it needs the studies {', '.join(study.needs)}")
+    for study in studies.values():
+        second = study.on_second()
+        print(f"{study.name}: {'; '.join(second.commands)}", flush=True)
+        make(second, again)
+
+
 def main():
     parser = argparse.ArgumentParser(
         prog="./run studies", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("names", nargs="*", help="studies of docs/studies.toml (default: all)")
     parser.add_argument("--again", action="store_true", help="measure anew what is measured")
+    parser.add_argument("--second", action="store_true", help="measure on a second processor")
     parser.add_argument("--list", action="store_true", help="say what there is")
     parser.add_argument("--draw", action="store_true", help="only draw the pictures anew")
     parser.add_argument("--quick", action="store_true", help="only what takes no time")
@@ -170,6 +190,9 @@ def main():
         if name not in studies:
             parser.error(f"there is no study '{name}'; ./run studies --list names them")
     chosen = {name: studies[name] for name in arguments.names or studies}
+    if arguments.second:
+        measure_on_second(parser, chosen if arguments.names else {}, arguments.again)
+        return 0
     if arguments.quick:
         chosen = {name: study for name, study in chosen.items() if study.quick}
     if arguments.list:

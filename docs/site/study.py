@@ -22,11 +22,12 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from page_data import DATA, ROOT
+from page_data import DATA, ROOT, SECOND
 
 PICTURES = ROOT / "docs/pictures"
 # The folders in which studies are measured for docs/data, and repeated beside it.
 MEASURED, REPEATED = "results/studies", "results/repeated"
+ON_SECOND = "results/second"  # for docs/data, on a second processor
 BIN = Path(os.environ.get("QDDOT_BIN", ROOT / "build/bin"))
 PYTHON_PATH = ("experiments/plot", "experiments/sweep", "build/python")
 # Left out of sidecars: states of all nodes, and the command with the folders of the machine.
@@ -47,6 +48,7 @@ class Study:
     columns: dict = field(default_factory=dict)  # of a large table, those that pages read
     quick: bool = False  # whether it takes no time, so that its text is compared each time
     room: str = ""  # the folder of the project in which its own lies; MEASURED by default
+    place: str = ""  # of its tables, in its folder of docs/data
 
     @property
     def folder(self):
@@ -57,6 +59,13 @@ class Study:
         commands = [line.replace(MEASURED + "/", REPEATED + "/") for line in self.commands]
         return dataclasses.replace(self, commands=commands, room=REPEATED)
 
+    def on_second(self):
+        """The same study for the pages' second column, without pictures."""
+        commands = [line.replace(MEASURED + "/", ON_SECOND + "/") for line in self.commands]
+        return dataclasses.replace(
+            self, commands=commands, room=ON_SECOND, place=SECOND, pictures={}, draws=False
+        )
+
     @property
     def is_complete(self):
         """Whether its folder has all that it measures."""
@@ -64,7 +73,7 @@ class Study:
 
     @property
     def data(self):
-        return DATA / self.name
+        return DATA / self.name / self.place
 
     @property
     def programs(self):

@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import tomllib
 import unittest
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
 from unittest import mock
@@ -144,6 +144,43 @@ class Runner(unittest.TestCase):
         self.assertEqual("", self.printed_by())
         self.printed_by("tiny", "--again")
         self.assertEqual(studies.processor(), study.record["processor"])
+
+    def test_a_second_processor_has_columns_of_its_own(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        data = folder / "DATA"
+        for name, place in (("PICTURES", Path), ("MEASURED", str), ("ON_SECOND", str)):
+            self.enterContext(mock.patch.object(entries, name, place(folder / name)))
+        for module in (entries, page_data):
+            self.enterContext(mock.patch.object(module, "DATA", data))
+        command = "exchange --scene fpu --until 1 --methods verlet --h-omega 0.5"
+        study = entries.Study("tiny", [command], tables=["summary.csv"])
+        self.enterContext(mock.patch.object(studies, "read_studies", lambda: {"tiny": study}))
+        # There is nothing to be second to.
+        self.assertEqual(2, self.refused("tiny", "--second"))
+        self.printed_by("tiny")
+        self.assertEqual(2, self.refused("tiny", "--second"))
+        self.assertEqual(2, self.refused("--second"))
+        self.assertEqual((["tiny"], "rate"), (page_data.measured("tiny"), page_data.column("rate", "tiny")))
+        first = {**study.record, "processor": "an abacus"}
+        entries.write_whole(study.data / "study.json", json.dumps(first))
+        page_data.record.cache_clear()
+
+        self.printed_by("tiny", "--second")
+        self.assertEqual(first, study.record)
+        both = page_data.measured("tiny")
+        self.assertEqual(["tiny", "tiny/second"], both)
+        names = [page_data.column("rate", name) for name in both]
+        self.assertEqual(["an abacus: rate", f"{studies.processor()}: rate"], names)
+        for name in both:
+            self.assertEqual("verlet", page_data.row(name, "summary.csv", method="verlet")["method"])
+        self.assertEqual([], sorted((folder / "PICTURES").rglob("*")))
+
+    def refused(self, *words):
+        """The exit status of ./run studies with these words."""
+        with mock.patch("sys.argv", ["studies.py", *words]), redirect_stderr(StringIO()):
+            with self.assertRaises(SystemExit) as ended:
+                studies.main()
+        return ended.exception.code
 
     def printed_by(self, *words):
         """What ./run studies prints with these words."""
