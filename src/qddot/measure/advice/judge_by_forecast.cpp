@@ -117,17 +117,17 @@ void Search::accept_pair(const Trial& coarse, const Trial& fine, double share) {
   check_.accept(fine, {own, &coarse, true});
 }
 
-// Whether the first run has the accuracy, by a finer one that was to be checked itself.
-bool Search::is_first_enough(const Trial& first, const Trial& finer, double accuracy) {
+// Whether a run has the accuracy, by a finer one that was to be checked itself.
+bool Search::is_enough(const Trial& run, const Trial& finer, double accuracy) {
   runs_.measure_by(finer);
-  const double between = runs_.distance_on_the_way(first, finer);
+  const double between = runs_.distance_on_the_way(run, finer);
   const double share = forecast_->error(*finer.method, finer.value) / between;
   if (!(share <= 1 / rules_.finer) ||
       rules_.doubt * between / (1 - share) > rules_.clearly_below * accuracy)
     return false;
-  accept_pair(first, finer, share);
-  check_.condition(first, accuracy);
-  if (check_.conditioning() && check_.is_known(first, accuracy)) return true;
+  accept_pair(run, finer, share);
+  check_.condition(run, accuracy);
+  if (check_.conditioning() && check_.is_known(run, accuracy)) return true;
   check_.set({});
   return false;
 }
@@ -160,11 +160,22 @@ bool Search::judge_by_forecast(double accuracy) {
       if (!runs_.is_sound(trial)) continue;
       tried = &trial;
       error = forecast_->error(*trial.method, trial.value);
-      if (is_first_enough(*first, trial, accuracy)) return true;
+      if (is_enough(*first, trial, accuracy)) return true;
     }
     const auto chosen =
         explicit_candidate(error / rules_.finer, tried->method, std::sqrt(rules_.doubt));
     if (!chosen) return false;
+    // Where a run is more accurate than it was to be, it may check one that takes less work than
+    // its own check.
+    const auto cheaper =
+        explicit_candidate(rules_.clearly_below * rules_.clearly_below / rules_.doubt * accuracy,
+                           nullptr, std::sqrt(rules_.doubt));
+    if (!is_kept && cheaper && cheaper->forces < chosen->forces &&
+        error <= cheaper->error / rules_.finer) {
+      const Trial& trial = runs_.make(*cheaper->method, cheaper->value);
+      forecast_->learn(check_);
+      if (runs_.is_sound(trial) && is_enough(trial, *tried, accuracy)) return true;
+    }
     // One of the two is pushed.
     const bool is_pushed = !tried->is_pushed;
     const Trial* made = runs_.find(*chosen->method, chosen->value, is_pushed);

@@ -23,28 +23,46 @@ std::vector<Vec> burst(const Model& model, const State& from, double h) {
   return q;
 }
 
+using Squares = std::array<double, OwnFrequencies::highest_order + 2>;
+
+// The largest k-th differences at the start of a burst, k = 1, 2, ... Some unknowns at a time pass
+// the caches once.
+Squares largest_differences(const std::vector<Vec>& q) {
+  constexpr Index some = 64;
+  Eigen::Array<double, some, burst_steps + 1> d;
+  Squares most{};
+  for (Index first = 0; first < q[0].size(); first += some) {
+    const Index count = std::min(some, q[0].size() - first);
+    for (Index j = 0; j <= burst_steps; ++j)
+      d.col(j).head(count) = q[static_cast<std::size_t>(j)].segment(first, count);
+    for (std::size_t k = 1; k < most.size(); ++k) {
+      for (Index j = 0; j + static_cast<Index>(k) <= burst_steps; ++j)
+        d.col(j).head(count) = d.col(j + 1).head(count) - d.col(j).head(count);
+      most[k] = std::max(most[k], d.col(0).head(count).abs().maxCoeff());
+    }
+  }
+  return most;
+}
+
 // Adds the squares of the k-th differences of bursts along the path. Returns the number of bursts
 // that reached their end.
 int add_bursts(const Model& model, const std::vector<State>& path, double h, int bursts,
-               std::array<double, OwnFrequencies::highest_order + 2>& squares) {
+               Squares& squares) {
   int taken = 0;
   for (int i = 0; i < bursts; ++i) {
     const auto place = static_cast<std::size_t>(i) * path.size() / static_cast<std::size_t>(bursts);
-    std::vector<Vec> q = burst(model, place == 0 ? model.initial() : path[place - 1], h);
+    const std::vector<Vec> q = burst(model, place == 0 ? model.initial() : path[place - 1], h);
     if (q.size() < burst_steps + 1) continue;
     ++taken;
-    for (std::size_t k = 1; k < squares.size(); ++k) {
-      for (std::size_t j = 0; j + k < q.size(); ++j) q[j] = q[j + 1] - q[j];
-      squares[k] += std::pow(q[0].lpNorm<Eigen::Infinity>(), 2);
-    }
+    const Squares most = largest_differences(q);
+    for (std::size_t k = 1; k < squares.size(); ++k) squares[k] += most[k] * most[k];
   }
   return taken;
 }
 
 // Rounding gives k-th differences a variance of C(2k, k) times the variance of the positions.
 // Squares that are no larger than that are replaced by an extrapolation from the orders below.
-void leave_out_rounding(std::array<double, OwnFrequencies::highest_order + 2>& squares,
-                        double largest_q) {
+void leave_out_rounding(Squares& squares, double largest_q) {
   constexpr double largest_of_many = 4;  // standard deviations: the largest of many normal numbers
   const double rounding = largest_of_many * machine_epsilon * largest_q;
   double binomial = 2;
@@ -72,7 +90,7 @@ OwnFrequencies own_frequencies(const Model& model, const std::vector<State>& pat
   // repeated with shorter steps.
   constexpr int most_attempts = 8;
   constexpr double shorter = 4;
-  std::array<double, OwnFrequencies::highest_order + 2> squares{};  // of the k-th differences
+  Squares squares{};  // of the k-th differences
   double h = burst_h_omega / w_max;
   int taken = 0;
   for (int attempt = 0; attempt < most_attempts && taken == 0; ++attempt) {

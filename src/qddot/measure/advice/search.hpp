@@ -60,7 +60,7 @@ class Search {
   bool judge_at_last(double accuracy, bool implicitly);
   bool judge_by_forecast(double accuracy);
   void accept_pair(const Trial& coarse, const Trial& fine, double share);
-  bool is_first_enough(const Trial& first, const Trial& finer, double accuracy);
+  bool is_enough(const Trial& run, const Trial& finer, double accuracy);
   bool judge_energy(double accuracy);
 
   std::vector<const Method*> with_error_control(bool implicitly, double accuracy) const;
