@@ -20,6 +20,7 @@ double growth_of_frequency(const Model& model, const std::vector<State>& path, d
                            std::size_t places) {
   if (model.system().stiffness_is_constant() || !(bound > 0)) return 1;
   double most = bound;
+  places = std::min(places, path.size());
   for (std::size_t i = 1; i <= places; ++i)
     most = std::max(most, frequency_bound(model.system(), path[i * path.size() / places - 1].q));
   return most / bound;
