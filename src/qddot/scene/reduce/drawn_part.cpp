@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "qddot/scene/reduce/node_order.hpp"
+
 namespace qddot::reduce {
 namespace {
 
@@ -30,24 +32,27 @@ bool is_plus_zero(const Eigen::Vector3d& v) {
   return std::ranges::all_of(v, [](double x) { return x == 0 && !std::signbit(x); });
 }
 
-// The place of each number in an ascending list: looked up where the list has few gaps, else
-// searched for.
+// The place of each number in a list: looked up where the list has few gaps or does not ascend,
+// else searched for.
 class PlaceOf {
  public:
   explicit PlaceOf(std::span<const std::size_t> list) : list_(list) {
     constexpr std::size_t most_gaps = 4;
-    if (list.empty() || list.back() - list.front() > most_gaps * list.size()) return;
-    places_.resize(list.back() - list.front() + 1);
-    for (std::size_t i = 0; i < list.size(); ++i)
-      places_[list[i] - list.front()] = static_cast<int>(i);
+    if (list.empty()) return;
+    const auto [least, largest] = std::ranges::minmax(list);
+    if (largest - least > most_gaps * list.size() && std::ranges::is_sorted(list)) return;
+    least_ = least;
+    places_.resize(largest - least + 1);
+    for (std::size_t i = 0; i < list.size(); ++i) places_[list[i] - least] = static_cast<int>(i);
   }
   int operator()(std::size_t number) const {
-    if (!places_.empty()) return places_[number - list_.front()];
+    if (!places_.empty()) return places_[number - least_];
     return static_cast<int>(std::ranges::lower_bound(list_, number) - list_.begin());
   }
 
  private:
   std::span<const std::size_t> list_;
+  std::size_t least_ = 0;
   std::vector<int> places_;
 };
 
@@ -85,6 +90,8 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
   std::ranges::sort(pins);
   pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
   drawn.nodes.insert(drawn.nodes.end(), pins.begin(), pins.end());
+  drawn.springs = renumbered(drawn, std::move(members.springs), nodes, springs);
+  gather_scattered_nodes(drawn);
 
   drawn.x.reserve(drawn.nodes.size());
   drawn.mass.reserve(drawn.nodes.size());
@@ -111,8 +118,6 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
   drawn.gravity_noise = rounding * drawn.gravity.norm();
   drawn.origin = local_origin(drawn.x);
   for (Eigen::Vector3d& x : drawn.x) x -= drawn.origin;
-
-  drawn.springs = renumbered(drawn, std::move(members.springs), nodes, springs);
   return drawn;
 }
 

@@ -14,8 +14,10 @@ namespace qddot::reduce {
 // A part of a scene with all that acts on it, numbered anew: its nodes, the pinned nodes at the
 // other ends of its springs, gravity and loads.
 struct DrawnPart {
-  std::vector<std::size_t> nodes{};  // the scene's numbers: free nodes, then pinned ones
-  std::size_t free = 0;              // how many are free
+  // The scene's numbers: free nodes, then pinned ones; both ascend unless the former were scattered
+  // (see node_order.hpp).
+  std::vector<std::size_t> nodes{};
+  std::size_t free = 0;  // how many are free
   // The place of x = 0 in the scene: zero or, if the part is far from zero for its size, a node of
   // the part. Positions are then exact differences. Rounding and tolerances scale with the part's
   // size instead of its distance from the scene's origin.

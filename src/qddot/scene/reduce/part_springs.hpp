@@ -24,6 +24,15 @@ class PartSprings {
               std::vector<std::array<int, 2>> ends)
       : all_(&all), chosen_(std::move(chosen)), ends_(std::move(ends)) {}
 
+  // Gives the ends other numbers: number(node) for each.
+  template <class Number>
+  void renumber(const Number& number) {
+    for (auto& [a, b] : ends_) {
+      a = number(a);
+      b = number(b);
+    }
+  }
+
   int size() const { return static_cast<int>(ends_.size()); }
   const std::array<int, 2>& ends(int e) const { return ends_[static_cast<std::size_t>(e)]; }
   const SpringLaw& law(int e) const { return drawn(e).law; }
