@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "qddot/model/grouped.hpp"
+#include "qddot/scene/reduce/part_neighbours.hpp"
 
 namespace qddot::reduce {
 namespace {
@@ -30,37 +30,11 @@ double mean_distance(const DrawnPart& drawn, const Number& number) {
   return count > 0 ? sum / count : 0;
 }
 
-// The free nodes breadth-first, each piece of them from the last node of a first search, which lies
-// at an end.
+// The free nodes breadth-first, from one at an end: the last of a first search.
 std::vector<int> breadth_first(const DrawnPart& drawn) {
-  const int nodes = static_cast<int>(drawn.free);
-  // Spring e is met from its first end by number 2 e, from its second by the next.
-  const Grouped meetings(nodes, 2 * drawn.springs.size(), [&](int k) {
-    return is_between_free(drawn, k / 2) ? drawn.springs.ends(k / 2)[k % 2] : Grouped::none;
-  });
-  std::vector<int> order;
-  order.reserve(drawn.free);
-  std::vector<char> searches(drawn.free, 0);
-  const auto search = [&](int first, char number) {
-    const std::size_t begin = order.size();
-    order.push_back(first);
-    searches[static_cast<std::size_t>(first)] = number;
-    for (std::size_t i = begin; i < order.size(); ++i) {
-      for (const int k : meetings[order[i]]) {
-        const int next = drawn.springs.ends(k / 2)[1 - k % 2];
-        if (std::exchange(searches[static_cast<std::size_t>(next)], number) != number)
-          order.push_back(next);
-      }
-    }
-    return begin;
-  };
-  for (int first = 0; first < nodes; ++first) {
-    if (searches[static_cast<std::size_t>(first)] != 0) continue;
-    const std::size_t begin = search(first, 1);
-    const int last = order.back();
-    order.resize(begin);
-    search(last, 2);
-  }
+  const Neighbours neighbours(drawn);
+  std::vector<int> order = neighbours.along_springs(neighbours.along_springs().back());
+  std::erase_if(order, [&](int node) { return node >= static_cast<int>(drawn.free); });
   return order;
 }
 

@@ -72,7 +72,7 @@ class Neighbours {
   explicit Neighbours(const DrawnPart& drawn)
       : springs_(drawn.springs),
         // Spring e is met from its first end by number 2 e, from its second by the next.
-        meetings_(static_cast<int>(drawn.x.size()), 2 * springs_.size(),
+        meetings_(static_cast<int>(drawn.nodes.size()), 2 * springs_.size(),
                   [&](int k) { return springs_.ends(k / 2)[at(k % 2)]; }) {}
 
   // Whether holds(neighbour) for each neighbour of the node.
@@ -82,11 +82,14 @@ class Neighbours {
   }
   int other_end(int k) const { return springs_.ends(k / 2)[at(1 - k % 2)]; }
 
-  // The nodes in an order in which each follows one of its neighbours, if possible.
-  std::vector<int> along_springs() const {
+  // The nodes breadth-first from one of them, so that each follows one of its neighbours if
+  // possible.
+  std::vector<int> along_springs(int start = 0) const {
+    const int nodes = meetings_.groups();
     std::vector<int> order;
-    std::vector<bool> is_seen(at(meetings_.groups()), false);
-    for (int first = 0; first < meetings_.groups(); ++first) {
+    std::vector<bool> is_seen(at(nodes), false);
+    for (int i = 0; i < nodes; ++i) {
+      const int first = (start + i) % nodes;
       if (is_seen[at(first)]) continue;
       is_seen[at(first)] = true;
       order.push_back(first);
