@@ -170,7 +170,7 @@ bool Search::judge_by_forecast(double accuracy) {
     const double finer = is_long && error <= rules_.small * accuracy ? rules_.doubt : rules_.finer;
     const auto chosen = explicit_candidate(error / finer, tried->method, std::sqrt(rules_.doubt));
     if (!chosen) return false;
-    // Where a run is more accurate than it was to be, it may check one that takes less work than
+    // The run may be more accurate than it was to be. It then checks one that takes less work than
     // its own check.
     const auto cheaper =
         explicit_candidate(rules_.clearly_below * rules_.clearly_below / rules_.doubt * accuracy,

@@ -96,9 +96,8 @@ class Stage {
   bool has_springs() const { return drawn_ && !drawn_->springs.empty(); }
   // Whether a dimension or a mirror was reduced of the scene that was drawn.
   bool is_reduced_by_symmetry() const;
-  // Runs the method on the scene as it was drawn, with all nodes pushed in all dimensions, and gives
-  // the distances from the trial.
-  // Empty if the run fails or there is no scene of springs.
+  // Runs the method on the scene as it was drawn, with all nodes pushed in all dimensions, and
+  // gives the distances from the trial. Empty if the run fails or there is no scene of springs.
   std::vector<double> distances_as_drawn(const Trial& trial, const Method& method, double value,
                                          const Limits& limits, const Push& push = {}) const;
 
