@@ -32,8 +32,10 @@ class Sample {
                                        }),
                          0);
     for (int& place : slices_.gathers) place *= point_stride<3>;
-    orders_.assign(slices_.count(), Order::by_slice);
     for (int i = 0; i < 3 * slices_.rows(); ++i) unknowns_.push_back(i);
+    for (int slice = 0; slice < slices_.count(); ++slice) {
+      slice_unknowns_.push_back({Order::by_slice, 3 * slice * slice_rows});
+    }
     q_ = Vec::LinSpaced(std::ssize(unknowns_), 0, 100);
     x_ = Vec::Zero(std::ssize(unknowns_) + 4 * slices_.rows());
     offset_ = f_ = Vec::Zero(std::ssize(unknowns_));
@@ -50,7 +52,7 @@ class Sample {
                               .laws = slices_.laws.data(),
                               .law_vectors = slices_.law_vectors,
                               .unknowns = unknowns_.data(),
-                              .orders = orders_.data(),
+                              .slice_unknowns = slice_unknowns_.data(),
                               .gathered = slices_.gathered.data()};
     const Positions positions{x_.data(), slices_.rows(), x_.data() + 3 * slices_.rows()};
     const auto start = Clock::now();
@@ -65,8 +67,8 @@ class Sample {
   static constexpr int nodes = 4 * slice_rows, reach = 6, evaluations = 2;
 
   NeighbourSlices slices_;
-  std::vector<Order> orders_;
   std::vector<int> unknowns_;
+  std::vector<SliceUnknowns> slice_unknowns_;
   Vec q_, x_, offset_, f_;
 };
 

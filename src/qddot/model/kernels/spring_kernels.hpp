@@ -28,6 +28,12 @@ struct SlotLaw {
 // or with coordinates that are no unknowns.
 enum class Order { by_slice, by_row, none };
 
+// The unknowns of a slice: their order and, where that is by slice, the first of them.
+struct SliceUnknowns {
+  Order order;
+  int first;
+};
+
 // A ring buffer for tau/l of the springs of one shift, until the rows of their other ends follow.
 // It holds the numbers of the last `mask` + 1 rows, a power of two; its first rows are repeated
 // behind them.
@@ -78,8 +84,8 @@ struct SpringTable {
   const SlotLaw* slot_laws;  // of all slots
   const double* laws;
   int law_vectors;
-  const int* unknowns;   // D of each row; -1 - x for a coordinate that is x and no unknown
-  const Order* orders;   // of the slices
+  const int* unknowns;  // D of each row; -1 - x for a coordinate that is x and no unknown
+  const SliceUnknowns* slice_unknowns;
   const char* gathered;  // of the slices: whether any slot gathers from their rows
 };
 

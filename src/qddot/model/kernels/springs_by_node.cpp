@@ -98,7 +98,7 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout,
       if (own[0] != unknowns(row)[0] + e / D * D) order = std::max(order, Order::by_row);
       if (own[0] < 0 || own[e % D] != own[0] + e % D) order = Order::none;
     }
-    order_.push_back(order);
+    slice_unknowns_.push_back({order, unknowns(row)[0]});
   }
   divide_into_parts();
 }
@@ -137,7 +137,7 @@ SpringTable SpringsByNode<D>::table() const {
           .laws = slices_.laws.data(),
           .law_vectors = slices_.law_vectors,
           .unknowns = unknowns_.data(),
-          .orders = order_.data(),
+          .slice_unknowns = slice_unknowns_.data(),
           .gathered = slices_.gathered.data()};
 }
 

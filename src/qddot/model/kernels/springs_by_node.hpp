@@ -98,7 +98,7 @@ class SpringsByNode {
   RingTable ring_table_{};
   std::vector<int> gathered_points_;  // where the points of the slices' gathers begin
   std::vector<int> unknowns_;         // D of each row
-  std::vector<Order> order_;          // of the slices
+  std::vector<SliceUnknowns> slice_unknowns_;
   SliceParts parts_;
   std::vector<int> first_image_;    // of each part, and the end
   std::vector<int> first_unknown_;  // likewise; a part's unknowns follow one another

@@ -47,16 +47,16 @@ template <int D>
                                                int slice, const Positions& positions) {
   const int row = slice * slice_rows;
   const int* unknowns = springs.unknowns + D * row;
+  const auto [order, first] = springs.slice_unknowns[slice];
   const bool is_gathered = D > 1 && springs.gathered[slice];
   // Vectors of eight lanes write points faster by rows.
-  const bool is_by_row = springs.orders[slice] == Order::by_row || (lanes == 8 && is_gathered);
-  if (springs.orders[slice] != Order::none && is_by_row) {
+  if (order != Order::none && (order == Order::by_row || (lanes == 8 && is_gathered))) {
     return place_by_row<D>(q, unknowns, row, is_gathered, positions);
   }
-  if (springs.orders[slice] == Order::by_slice) {
+  if (order == Order::by_slice) {
     for (int t = 0; t < slice_rows; t += lanes) {
       Lanes x[D];
-      deinterleave<D>(q + unknowns[0] + D * t, x);
+      deinterleave<D>(q + first + D * t, x);
       for (int a = 0; a < D; ++a) store(coordinate(positions, a, row + t), x[a]);
     }
   } else {

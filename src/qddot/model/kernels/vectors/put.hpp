@@ -40,15 +40,14 @@ template <int D>
 template <int D>
 [[gnu::always_inline]] inline void put(const SpringTable& springs, int slice, int part,
                                        const Lanes (&sum)[D], const Offset& offset, double* f) {
+  const auto [order, first] = springs.slice_unknowns[slice];
+  if (order == Order::by_slice) {
+    const int own = first + D * part * lanes;
+    return interleave<D>(sum, offset.of_slice ? offset.of_slice : offset.all + own, f + own);
+  }
   const int* unknowns = springs.unknowns + D * (slice * slice_rows + part * lanes);
-  switch (springs.orders[slice]) {
-    case Order::by_slice:
-      return interleave<D>(sum, offset.of_slice ? offset.of_slice : offset.all + unknowns[0],
-                           f + unknowns[0]);
-    case Order::by_row:
-      return put_by_row<D>(unknowns, sum, offset.all, f);
-    case Order::none:
-      break;
+  if (order == Order::by_row) {
+    return put_by_row<D>(unknowns, sum, offset.all, f);
   }
   double sums[D][lanes];
   for (int a = 0; a < D; ++a) store(sums[a], sum[a]);
