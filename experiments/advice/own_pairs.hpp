@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -66,6 +67,8 @@ class PlainPairs {
       : scene_(std::move(scene)), pairs_(std::move(pairs)) {}
 
   const Scene& scene() const { return scene_; }
+  // Forces act towards zero, too.
+  std::array<Real, 3> origin() const { return {}; }
   Vector positions() const { return plain_positions<Real>(scene_); }
   Vector velocities() const { return plain_velocities<Real>(scene_); }
   bool place_massless(Vector&) const { return true; }

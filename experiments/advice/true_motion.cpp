@@ -22,11 +22,12 @@ bool follow(Motion& motion, const std::vector<double>& times, std::vector<std::v
   for (const double t : times) {
     if (!motion.advance(t, most_steps - motion.tried_steps())) return false;
     std::vector<Node> nodes = motion.model().scene().nodes;
+    const auto state = motion.state();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
         const auto axis = static_cast<Index>(c);
-        nodes[i].position[axis] = static_cast<double>(motion.state().x[3 * i + c]);
-        nodes[i].velocity[axis] = static_cast<double>(motion.state().v[3 * i + c]);
+        nodes[i].position[axis] = static_cast<double>(state.x[3 * i + c]);
+        nodes[i].velocity[axis] = static_cast<double>(state.v[3 * i + c]);
       }
     }
     path.push_back(std::move(nodes));

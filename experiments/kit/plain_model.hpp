@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -41,12 +43,15 @@ std::vector<Real> plain_velocities(const Scene& scene) {
 // The equations of motion of a scene as drawn, without reductions and independent of the model
 // under test. x and v are positions and velocities of all nodes, node after node, three coordinates
 // each. Forces are summed one spring after the other. Real is double, long double or Quadruple.
+// Forces and places may have positions from origin(), as they depend on differences alone: far from
+// zero, such numbers resolve more.
 template <class Real>
 class PlainModel {
  public:
   using Vector = std::vector<Real>;
 
   explicit PlainModel(const Scene& scene) : scene_(scene), has_loads_(has_loads(scene)) {
+    if (is_far(scene)) std::copy_n(scene.nodes[0].position.data(), 3, origin_.begin());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
       if (!scene.nodes[i].pinned && scene.nodes[i].mass == 0) massless_.push_back(i);
     }
@@ -55,6 +60,8 @@ class PlainModel {
   const Scene& scene() const { return scene_; }
   bool has_massless() const { return !massless_.empty(); }
 
+  // The first node, if all are near it and far from zero; else zero [m].
+  const std::array<Real, 3>& origin() const { return origin_; }
   Vector positions() const { return plain_positions<Real>(scene_); }
   Vector velocities() const { return plain_velocities<Real>(scene_); }
 
@@ -93,7 +100,7 @@ class PlainModel {
     }
   }
 
-  // 1/2 v'Mv + V [J]; weights and loads of pinned nodes do not count.
+  // 1/2 v'Mv + V [J]; weights and loads of pinned nodes do not count. x is from zero.
   Real energy(const Vector& x, const Vector& v) const {
     Real sum = 0;
     for (const Spring& spring : scene_.springs) {
@@ -118,6 +125,15 @@ class PlainModel {
   bool place_massless(Vector& x) const;
 
  private:
+  static bool is_far(const Scene& scene) {
+    double nearest = 0, farthest = 0;
+    for (const Node& node : scene.nodes) {
+      const Eigen::Vector3d d = node.position - scene.nodes[0].position;
+      nearest = std::max(nearest, d.lpNorm<Eigen::Infinity>());
+      farthest = std::max(farthest, node.position.lpNorm<Eigen::Infinity>());
+    }
+    return farthest > 4 * nearest;
+  }
   // d, from one end of the spring to the other, and its square.
   static Real squared_length(const Spring& spring, const Vector& x, Real (&d)[3]) {
     Real l2 = 0;
@@ -135,6 +151,7 @@ class PlainModel {
   Scene scene_;
   bool has_loads_;
   std::vector<std::size_t> massless_;
+  std::array<Real, 3> origin_{};
 };
 
 // Newton's iteration on -K d = f over the coordinates of the massless nodes in the scene's

@@ -29,6 +29,7 @@ class PlainMotion {
   PlainMotion(const Scene& scene, Real tolerance) : PlainMotion(Model(scene), tolerance) {}
   PlainMotion(Model model, Real tolerance) : model_(std::move(model)), tolerance_(tolerance) {
     now_ = {0, model_.positions(), model_.velocities()};
+    for (std::size_t c = 0; c < now_.x.size(); ++c) now_.x[c] -= model_.origin()[c % 3];
     stands_ = model_.place_massless(now_.x);
     const Scene& scene = model_.scene();
     // Velocities of massless nodes follow from the others' and are left at zero.
@@ -39,7 +40,11 @@ class PlainMotion {
   }
 
   const Model& model() const { return model_; }
-  const PlainState<Real>& state() const { return now_; }
+  PlainState<Real> state() const {
+    PlainState<Real> state = now_;
+    for (std::size_t c = 0; c < state.x.size(); ++c) state.x[c] += model_.origin()[c % 3];
+    return state;
+  }
   // Moves where it is now [m] and how fast [m/s], along one coordinate of a node.
   void displace(std::size_t coordinate, Real by, Real faster) {
     now_.x[coordinate] += by;
@@ -150,7 +155,7 @@ class PlainMotion {
 
   Model model_;
   Real tolerance_, step_ = 0, travelled_ = 0, speed_ = 0;
-  PlainState<Real> now_;
+  PlainState<Real> now_;  // positions from the model's origin
   bool stands_ = false;
   int forced_ = 0, tried_ = 0;
   Vector x_[levels], v_[levels];
