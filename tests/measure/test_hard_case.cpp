@@ -79,6 +79,25 @@ BOOST_AUTO_TEST_CASE(the_truth_of_own_forces_has_the_same_forces) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_truth_is_the_same_far_from_zero) {
+  // A turning pair of masses. The places are multiples of 2^-20, so that no move rounds them. Both
+  // truths have positions from the first mass, and so the same numbers.
+  Scene scene{.dimension = 3, .gravity = {0, -1, 0}};
+  scene.nodes = {{.velocity = {1e-6, 0, 2e-6}, .mass = 1},
+                 {.position = {1, 0.5, 0x1p-20}, .velocity = {0, 3e-6, 0}, .mass = 0.5}};
+  scene.springs = {{{0, 1}, {.stiffness = 40, .rest_length = 1}}};
+  Scene far = scene;
+  for (Node& node : far.nodes) node.position += Eigen::Vector3d{0x1p20, -0x1p19, 0x1p20};
+  PlainMotion<long double> near_zero(scene, 1e-17L), elsewhere(far, 1e-17L);
+  BOOST_TEST_REQUIRE((near_zero.advance(20) && elsewhere.advance(20)));
+  const auto expected = near_zero.state(), found = elsewhere.state();
+  for (std::size_t c = 0; c < 6; ++c) {
+    BOOST_TEST((found.v[c] == expected.v[c]));
+    const long double shift = elsewhere.model().positions()[c] - near_zero.model().positions()[c];
+    BOOST_TEST(std::abs(static_cast<double>(found.x[c] - shift - expected.x[c])) < 1e-12);  // 2^-43
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_true_motion_is_that_of_known_solutions) {
   // Three periods of a planet that comes within a hundredth of its distance, back at its start.
   HardCase planet{.scene = {.dimension = 2}, .until = 6 * std::numbers::pi};

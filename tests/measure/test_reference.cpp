@@ -1,8 +1,10 @@
 #include <boost/test/unit_test.hpp>
 
+#include "experiments/kit/plain_motion.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/reference/reference_path.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "tests/fragments.hpp"
 #include "tests/measure/clocks.hpp"
@@ -33,6 +35,21 @@ Scene compressed_strut() {
     const auto own = static_cast<std::size_t>(i);
     scene.springs.push_back({{own - 1, own}, {.stiffness = 1000, .rest_length = 1}});
   }
+  return scene;
+}
+
+// A mass between two pins whose springs are compressed by a fiftieth, and a spring at rest across
+// them. Their stiffnesses across nearly cancel: 78 - 2 40/1 N/m. So the mass leaves its place as
+// exp(4.5 t), and a force of 1e-14 N moves it a thousand times as far as across a single spring.
+Scene nearly_critical_column() {
+  Scene scene{.name = "column", .dimension = 2};
+  scene.nodes = {{.position = {0.6, 0.8, 0}, .pinned = true},
+                 {.position = {-0.6, -0.8, 0}, .pinned = true},
+                 {.position = {-0.8, 0.6, 0}, .pinned = true},
+                 {.position = {3e-10, 9e-10, 0}, .mass = 0.1}};
+  scene.springs = {{{0, 3}, {.stiffness = 2000, .rest_length = 1.02}},
+                   {{1, 3}, {.stiffness = 2000, .rest_length = 1.02}},
+                   {{2, 3}, {.stiffness = 78, .rest_length = 1}}};
   return scene;
 }
 
@@ -147,6 +164,42 @@ BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) 
     BOOST_TEST(std::isinf(made.horizon), name);
     BOOST_TEST(made.lyapunov == 0, name);
     BOOST_TEST(made.modal_shares.size() == 0, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(rounding_of_pins_counts_where_forces_nearly_cancel) {
+  const Scene scene = nearly_critical_column();
+  const Model model(scene);
+  const double until = 2;
+  const Reference alone = make_reference(model, until, seconds),
+                  made = make_reference(model, until, seconds, &scene);
+  // The mass itself is near the origin, so that its own rounding is far smaller.
+  BOOST_TEST(made.rounding_effect > 1e3 * alone.rounding_effect);
+  PlainMotion<Quadruple> truth(scene, Quadruple(1e-24));
+  BOOST_TEST_REQUIRE(truth.advance(until));
+  const auto expected = truth.state();
+  const Node end = model.expand(made.end).back();
+  const double x = static_cast<double>(Quadruple(end.position.x()) - expected.x[9]),
+               y = static_cast<double>(Quadruple(end.position.y()) - expected.x[10]);
+  BOOST_TEST(std::hypot(x, y) <= made.certified.position * made.scales.displacement);
+  BOOST_TEST(made.certified.position < 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(far_from_zero_a_position_is_known_to_its_rounding) {
+  // One spring from a pin at x, pulled by 2^-10 m: x(t) = x + 1 + cos(w t)/1024.
+  constexpr double x = 1 << 20, part = 1.0 / 1024;
+  Scene scene{.name = "far", .dimension = 1};
+  scene.nodes = {{.position = {x, 0, 0}, .pinned = true},
+                 {.position = {x + 1 + part, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 1}, {.stiffness = 4, .rest_length = 1}}};
+  for (const double until : {0.3, 2.0, 7.0}) {
+    const Model model(scene);
+    const Reference made = make_reference(model, until, seconds, &scene);
+    const double rounding = machine_epsilon * x / made.scales.displacement;
+    BOOST_TEST((made.certified.position >= rounding && made.certified.position < slack * rounding));
+    const double moved = model.expand(made.end).back().position.x() - (x + 1);
+    BOOST_TEST(std::abs(moved - part * std::cos(2 * until)) <=
+               made.certified.position * made.scales.displacement);
   }
 }
 

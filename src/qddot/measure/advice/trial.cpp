@@ -12,22 +12,6 @@
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
-namespace {
-
-// Moves numbers by some roundings of a size, each up or down at random.
-class Shift {
- public:
-  explicit Shift(const Push& push) : by_(push.roundings * machine_epsilon), random_(push.seed) {}
-  void operator()(double& number, double size) {
-    number += random_() % 2 ? by_ * size : -by_ * size;
-  }
-
- private:
-  double by_;
-  std::mt19937 random_;
-};
-
-}  // namespace
 
 Stage::Stage(const Model& model, double until, AccuracyOf of, const Scene* drawn,
              const Rules& rules)
@@ -105,20 +89,8 @@ Trial Stage::run(const Method& method, double value, const Limits& limits) const
 
 Trial Stage::run_pushed(const Method& method, double value, const Limits& limits,
                         const Push& push) const {
-  State start = model_.initial();
-  Shift shift(push);
-  Index at = 0;
-  std::size_t part = 0;
-  for (const Index n : model_.unknowns_by_part()) {
-    const PartScale& own = scales_.parts[part++];
-    for (Index i = at; i < at + n; ++i) {
-      shift(start.q[i], std::max(own.extent, own.displacement));
-      shift(start.v[i], own.speed);
-    }
-    at += n;
-  }
-  Trial trial =
-      run_by(*integrator(model_, method, value, limits), model_, start, method, value, limits);
+  Trial trial = run_by(*integrator(model_, method, value, limits), model_,
+                       pushed_start(model_, scales_, push), method, value, limits);
   trial.is_pushed = true;
   return trial;
 }
@@ -198,25 +170,8 @@ std::vector<double> Stage::distances_as_drawn(const Trial& trial, const Method& 
                                               const Push& push) const {
   std::vector<double> all;
   if (!has_springs()) return all;
-  Scene scene = *drawn_;
-  double extent = 0, speed = 0;
-  for (const PartScale& part : scales_.parts) {
-    extent = std::max({extent, part.extent, part.displacement});
-    speed = std::max(speed, part.speed);
-  }
-  Shift shift(push);
-  for (Node& node : scene.nodes) {
-    for (int c = 0; c < scene.dimension; ++c) {
-      shift(node.position[c], extent);
-      if (!node.pinned) shift(node.velocity[c], speed);
-    }
-  }
-  // A push of both ends hides that of a rest length, unless it is longer than all the scene. Equal
-  // springs stay equal, which makes the forces of a large scene faster.
-  for (Spring& spring : scene.springs) {
-    if (spring.law.rest_length > extent) shift(spring.law.rest_length, spring.law.rest_length);
-  }
-  const Model drawn(scene, Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  const Model drawn(pushed_scene(*drawn_, scales_, push),
+                    Reductions().without(Reduction::dimension).without(Reduction::mirror));
   if (!applies_to(method, drawn.system())) return all;
   const Trial pushed = run_by(*integrator(drawn, method, value, limits), drawn, drawn.initial(),
                               method, value, limits);

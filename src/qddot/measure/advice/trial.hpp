@@ -10,7 +10,7 @@
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/advice/rules.hpp"
 #include "qddot/measure/motion/deadline.hpp"
-#include "qddot/measure/motion/error.hpp"
+#include "qddot/measure/motion/pushed_start.hpp"
 
 namespace qddot::inline measure {
 
@@ -36,14 +36,6 @@ struct Trial {
   bool only_end = false;   // was not seen on the way
 
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
-};
-
-// The push of a start away from what was drawn.
-struct Push {
-  // Different seeds push in different directions.
-  std::uint32_t seed = 1;
-  // The change of each number, in roundings of the largest one, up or down.
-  double roundings = 1;
 };
 
 // The limits of a run. A limit of forces ends it after the same work on every machine.

@@ -53,8 +53,9 @@ void require_affordable(const Model& scene, double until, double steps, double s
 class Composed {
  public:
   // In about `seconds`, of those that are allowed for the whole reference.
-  Composed(const Model& scene, double until, double seconds, double allowed, const Expect& expect)
-      : scene_(scene), until_(until), longest_rounding_(allowed) {
+  Composed(const Model& scene, double until, double seconds, double allowed, const Scene* drawn,
+           const Expect& expect)
+      : scene_(scene), until_(until), longest_rounding_(allowed), drawn_(drawn) {
     // The steps resolve the fastest frequency at the start: h w = 2, 1, 1/2, ...
     const double bound = frequency_bound(scene.system(), scene.initial().q);
     const double coarsest = std::max(16.0, std::ceil(until * bound / 2));
@@ -75,12 +76,13 @@ class Composed {
  private:
   const RoundingRun& rounding_of(const Solution& solution) {
     if (!rounding_ || rounding_->knob() != solution.knob)
-      rounding_.emplace(scene_, solution, until_, longest_rounding_);
+      rounding_.emplace(scene_, solution, until_, longest_rounding_, drawn_);
     return *rounding_;
   }
 
   const Model& scene_;
   double until_, longest_rounding_;
+  const Scene* drawn_;
   Solution finest_;
   std::optional<RoundingRun> rounding_;
 };
@@ -108,7 +110,7 @@ Reference make_reference(const Model& scene, double until, double seconds, const
                          const Expect& expect) {
   const auto begin = clock_now();
   require_constant_energy(scene.system());
-  const Composed composed(scene, until, 0.6 * seconds, seconds, expect);
+  const Composed composed(scene, until, 0.6 * seconds, seconds, start, expect);
   const Solution& finest = composed.finest();
   const Errors& effect = composed.rounding().effect();
   Reference reference;

@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "qddot/measure/motion/modal_shares.hpp"
+#include "qddot/measure/motion/pushed_start.hpp"
+#include "qddot/measure/motion/rest.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
 namespace {
+
+const double half_the_digits = 1 / std::sqrt(machine_epsilon);  // in roundings
+// Regular motions' differences may grow by some thousands (see exponential_growth).
+constexpr double regular_growth = 1000;
+// A frequency is the root of a quotient. A term of V has a root, a difference, a square, a product.
+constexpr double roundings_of_frequency = 2, roundings_of_energy = 4;
 
 double reach(const PartScale& part) { return std::max(part.extent, part.displacement); }
 
@@ -27,41 +34,56 @@ Vec by_unknown(const Model& scene, const Scales& scales, const Of& of) {
 
 }  // namespace
 
-State displaced_start(const Model& scene, const Scales& scales, double part) {
-  State start = scene.initial();
-  const Vec lengths = by_unknown(scene, scales, reach);
-  const Vec speeds = by_unknown(scene, scales, [](const PartScale& own) { return own.speed; });
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> share(-part, part);
-  for (Index i = 0; i < start.q.size(); ++i) start.q[i] += lengths[i] * share(random);
-  for (Index i = 0; i < start.v.size(); ++i) start.v[i] += speeds[i] * share(random);
-  return start;
-}
-
-RoundingRun::RoundingRun(const Model& scene, const Solution& composed, double until, double seconds)
+RoundingRun::RoundingRun(const Model& scene, const Solution& composed, double until, double seconds,
+                         const Scene* drawn)
     : scene_(scene),
       path_(composed.path),
       scales_(composed.scales),
       knob_(composed.knob),
-      steps_(until / composed.knob),
-      start_(displaced_start(scene, scales_, machine_epsilon)) {
-  // Masses and stiffnesses are rounded too. If all frequencies change by one rounding, each state
-  // comes early or late by one rounding of the time.
-  moved_ = composition(scene, start_, until * (1 + machine_epsilon), knob_, seconds);
+      steps_(until / composed.knob) {
+  Scales reaching = scales_;
+  if (drawn) reach_to_pins(reaching, *drawn);
+  start_ = pushed_start(scene, reaching);
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    if (!repeat(composed, reaching, seed, until, seconds, drawn)) break;
+    // Where errors grow in one direction, a single push may miss it.
+    if (growth_ < regular_growth || worse(effect_) > far_apart) break;
+  }
   if (!moved_) return;
-  effect_ = errors_between(scene, moved_->end, composed.end, 0, scales_);
   const State& initial = scene.initial();
   const double kinetic = scene.kinetic(initial), potential = scene.potential(initial);
-  effect_.energy =
-      errors_between(scene, start_, start_, scene.energy(initial), scales_).energy +
-      (scales_.kinetic > 0 ? machine_epsilon * (kinetic + std::abs(potential)) / scales_.kinetic
-                           : 0);
-  const Vec lengths = by_unknown(scene, scales_, reach);
+  effect_.energy = errors_between(scene, start_, start_, scene.energy(initial), scales_).energy +
+                   (scales_.kinetic > 0 ? roundings_of_energy * machine_epsilon *
+                                              (kinetic + std::abs(potential)) / scales_.kinetic
+                                        : 0);
+}
+
+bool RoundingRun::repeat(const Solution& composed, const Scales& reaching, std::uint32_t seed,
+                         double until, double seconds, const Scene* drawn) {
+  // If pins are pushed as well, forces change as they do by rounding.
+  std::optional<Model> pushed;
+  if (drawn) pushed.emplace(pushed_scene(*drawn, reaching, {.seed = seed}));
+  const bool is_alike = pushed && pushed->unknowns_by_part() == scene_.unknowns_by_part();
+  const State start = is_alike ? pushed->initial() : pushed_start(scene_, reaching, {.seed = seed});
+  // If all frequencies change by some roundings, each state comes early or late by as many of the
+  // time. A longer end alone would be taken for the same one, as steps end beside it.
+  constexpr double longer = 1 + roundings_of_frequency * machine_epsilon;
+  auto moved =
+      composition(is_alike ? *pushed : scene_, start, until * longer, knob_ * longer, seconds);
+  if (!moved) return false;
+  const Errors effect = errors_between(scene_, moved->end, composed.end, 0, scales_);
+  const Vec lengths = by_unknown(scene_, reaching, reach);
   for (Index i = 0; i < lengths.size(); ++i) {
     if (lengths[i] == 0) continue;
     growth_ = std::max(
-        growth_, std::abs(moved_->end.q[i] - composed.end.q[i]) / (machine_epsilon * lengths[i]));
+        growth_, std::abs(moved->end.q[i] - composed.end.q[i]) / (machine_epsilon * lengths[i]));
   }
+  if (!moved_ || worse(effect) > worse(effect_)) {
+    start_ = start;
+    moved_ = std::move(moved);
+  }
+  effect_ = larger(effect_, effect);
+  return true;
 }
 
 bool RoundingRun::explains(double change) const {
@@ -87,22 +109,25 @@ void RoundingRun::tell(Reference& reference) const {
 std::optional<OutOfSymmetry> out_of_symmetry(const Scene& start, const Model& scene,
                                              const Solution& composed, double until,
                                              double seconds) {
-  const Model drawn(start, Reductions().without(Reduction::dimension).without(Reduction::mirror));
+  const auto as_drawn = Reductions().without(Reduction::dimension).without(Reduction::mirror);
+  const Model drawn(start, as_drawn);
   Scales scales;
   extend(scales, drawn, drawn.initial());
+  reach_to_pins(scales, start);
   // A node that starts at the origin has no coordinate to round; its displacement is rounded
   // instead.
   for (PartScale& part : scales.parts) {
     if (part.extent == 0) part.displacement = composed.scales.displacement;
   }
-  const State pushed = displaced_start(drawn, scales, machine_epsilon);
-  const auto moved = composition(drawn, pushed, until, composed.knob, seconds);
+  const Model moving(pushed_scene(start, scales), as_drawn);
+  const State& pushed = moving.initial();
+  const auto moved = composition(moving, pushed, until, composed.knob, seconds);
   if (!moved) return {};
   std::vector<double> times, differences;
   const auto compare = [&](const State& symmetric, const State& other) {
     times.push_back(symmetric.t);
     differences.push_back(
-        position_error(drawn.expand(other), scene.expand(symmetric), composed.scales));
+        position_error(moving.expand(other), scene.expand(symmetric), composed.scales));
   };
   compare(scene.initial(), pushed);
   for (std::size_t i = 0; i < moved->path.size(); ++i) compare(composed.path[i], moved->path[i]);
@@ -115,8 +140,8 @@ void measure_shares(Reference& reference, const Model& scene, const Solution& co
   const auto modes = ModalShares::at_equilibrium(scene);
   if (!modes) return;
   const auto other =
-      composition(scene, displaced_start(scene, composed.scales, std::sqrt(machine_epsilon)), until,
-                  composed.knob, seconds);
+      composition(scene, pushed_start(scene, composed.scales, {.roundings = half_the_digits}),
+                  until, composed.knob, seconds);
   if (!other) return;
   reference.modal_shares = modes->mean(composed.path);
   reference.modal_shares_floor = total_variation(reference.modal_shares, modes->mean(other->path));

@@ -4,17 +4,15 @@
 
 namespace qddot::inline measure {
 
-// The start with each unknown changed at random. Positions change by up to `part` times the largest
-// coordinate or displacement of their part of the scene; velocities change by up to `part` times
-// its speed. The machine's epsilon as `part` makes that one rounding.
-State displaced_start(const Model& scene, const Scales& scales, double part);
-
 // Repeats a composition from a start that is one rounding away, to an end time one rounding later.
-// Measures the effect on the end.
+// Measures the effect on the end. If it grows much, the largest effect of three such starts counts.
 class RoundingRun {
  public:
-  // Takes `seconds` at most; if they are not enough, reached_end() is false and there is no effect.
-  RoundingRun(const Model& scene, const Solution& composed, double until, double seconds);
+  // Each run takes `seconds` at most; if they are not enough, reached_end() is false and there is
+  // no effect. `drawn`: the scene that `scene` is the reduction of, if known, so that pins are
+  // rounded, too.
+  RoundingRun(const Model& scene, const Solution& composed, double until, double seconds,
+              const Scene* drawn);
 
   bool reached_end() const { return moved_.has_value(); }
   double knob() const { return knob_; }
@@ -29,6 +27,10 @@ class RoundingRun {
   void tell(Reference& reference) const;
 
  private:
+  // False if the run takes too long. `reaching`: the scales, with extents that reach to pins.
+  bool repeat(const Solution& composed, const Scales& reaching, std::uint32_t seed, double until,
+              double seconds, const Scene* drawn);
+
   const Model& scene_;
   std::vector<State> path_;
   Scales scales_;

@@ -133,9 +133,13 @@ Reference joined(const Model& scene, const Solution& one, const Solution& other,
   certified = larger(certified, larger(rounding_effect, larger(one.change, other.change)));
   const Errors drift = errors_between(scene, one.end, one.end, energy, one.scales);
   certified.energy = std::max(certified.energy, drift.energy);
-  for (double* part : {&certified.position, &certified.velocity, &certified.energy}) {
-    // Two roundings of one number may agree by chance.
+  for (double* part : {&certified.position, &certified.velocity, &certified.energy})
     *part = std::max(safety * *part, machine_epsilon);
+  // Two roundings of one number may agree by chance.
+  for (const PartScale& part : one.scales.parts) {
+    const double displacement = one.scales.displacement_of(part);
+    certified.position = std::max(
+        certified.position, machine_epsilon * part.extent / (displacement > 0 ? displacement : 1));
   }
   Reference reference{.end = one.end,
                       .energy = energy,
