@@ -98,12 +98,6 @@ Solution best_fehlberg(const Model& scene, double until, const Composed& compose
       [&](const Solution&, double change) { return composed.rounding().explains(change); });
 }
 
-bool is_reduced_by_symmetry(const Model& scene) {
-  return std::ranges::any_of(scene.findings(), [](const Finding& finding) {
-    return finding.reduction == Reduction::dimension || finding.reduction == Reduction::mirror;
-  });
-}
-
 }  // namespace
 
 Reference make_reference(const Model& scene, double until, double seconds, const Scene* start,

@@ -32,7 +32,20 @@ Vec by_unknown(const Model& scene, const Scales& scales, const Of& of) {
   return all;
 }
 
+// Whether the unknowns of both, which are reduced by no symmetry, are those of the same nodes.
+bool are_alike(const Model& one, const Model& other) {
+  const auto reduction = [](const Finding& finding) { return finding.reduction; };
+  return std::ranges::equal(one.findings(), other.findings(), {}, reduction, reduction) &&
+         one.unknowns_by_part() == other.unknowns_by_part();
+}
+
 }  // namespace
+
+bool is_reduced_by_symmetry(const Model& scene) {
+  return std::ranges::any_of(scene.findings(), [](const Finding& finding) {
+    return finding.reduction == Reduction::dimension || finding.reduction == Reduction::mirror;
+  });
+}
 
 RoundingRun::RoundingRun(const Model& scene, const Solution& composed, double until, double seconds,
                          const Scene* drawn)
@@ -62,8 +75,9 @@ bool RoundingRun::repeat(const Solution& composed, const Scales& reaching, std::
                          double until, double seconds, const Scene* drawn) {
   // If pins are pushed as well, forces change as they do by rounding.
   std::optional<Model> pushed;
-  if (drawn) pushed.emplace(pushed_scene(*drawn, reaching, {.seed = seed}));
-  const bool is_alike = pushed && pushed->unknowns_by_part() == scene_.unknowns_by_part();
+  if (drawn && !is_reduced_by_symmetry(scene_))
+    pushed.emplace(pushed_scene(*drawn, reaching, {.seed = seed}));
+  const bool is_alike = pushed && are_alike(*pushed, scene_);
   const State start = is_alike ? pushed->initial() : pushed_start(scene_, reaching, {.seed = seed});
   // If all frequencies change by some roundings, each state comes early or late by as many of the
   // time. A longer end alone would be taken for the same one, as steps end beside it.
