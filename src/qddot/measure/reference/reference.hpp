@@ -42,8 +42,9 @@ struct Reference {
   Scales scales;
   Errors certified;
   // The effect of one rounding of the start on the positions at the end, as a position error. Then
-  // the factor by which it has grown. The rounding is a random displacement of up to 2^-52 of the
-  // scene's extent. A motion is chaotic if the effect grows exponentially.
+  // the factor by which it has grown. The rounding is a random displacement by about 2^-52 of the
+  // extent, also of pins if the drawn scene is given and no symmetry reduces it. A motion is
+  // chaotic if the effect grows exponentially.
   double rounding_effect = 0, perturbation_growth = 0;
   // The time [s] from which the displaced motion and the reference are `apart`, extrapolated if it
   // is after the end. Then the rate [1/s] at which they part. For regular motions they are infinite
