@@ -167,6 +167,19 @@ BOOST_AUTO_TEST_CASE(one_rounding_of_the_start_does_little_to_a_regular_motion) 
   }
 }
 
+BOOST_AUTO_TEST_CASE(rounding_of_a_frequency_counts_in_proportion_to_time) {
+  // w = sqrt(k/m) has an error of about one rounding, and the phase w t has it w t times. A
+  // reference moves w by two and certifies twice the effect; h rounds by up to a half.
+  const Scene start = drawn("oscillator", {{"mass", 3}, {"stiffness", 25}, {"velocity", -3}});
+  const Model scene(start);
+  for (const double until : {200.0, 1000.0}) {
+    const Reference made = make_reference(scene, until, seconds, &start);
+    const double phase = std::sqrt(25 / 3.0) * until * machine_epsilon;
+    BOOST_TEST(std::max(made.certified.position, made.certified.velocity) >= 2.5 * phase);
+    BOOST_TEST(worse(made.certified) < slack * phase);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(rounding_of_pins_counts_where_forces_nearly_cancel) {
   const Scene scene = nearly_critical_column();
   const Model model(scene);
