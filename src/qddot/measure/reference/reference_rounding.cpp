@@ -59,7 +59,7 @@ RoundingRun::RoundingRun(const Model& scene, const Solution& composed, double un
   start_ = pushed_start(scene, reaching);
   for (const std::uint32_t seed : {1, 2, 3}) {
     if (!repeat(composed, reaching, seed, until, seconds, drawn)) break;
-    // Where errors grow in one direction, a single push may miss it.
+    // A single push may miss the direction in which errors grow.
     if (growth_ < regular_growth || worse(effect_) > far_apart) break;
   }
   if (!moved_) return;
