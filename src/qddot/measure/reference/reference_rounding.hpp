@@ -7,7 +7,7 @@ namespace qddot::inline measure {
 // Whether its motion is computed on a line, in a plane or with mirror symmetry. A push breaks that.
 bool is_reduced_by_symmetry(const Model& scene);
 
-// Repeats a composition from a start that is one rounding away, to an end time one rounding later.
+// Repeats a composition from a start that is one rounding away, with steps that are two longer.
 // Measures the effect on the end. If it grows much, the largest effect of three such starts counts.
 class RoundingRun {
  public:
