@@ -129,6 +129,54 @@ const Kinks* BlockDiagonalSystem::kinks() const {
   return any_has(blocks_, &System::kinks) ? this : nullptr;
 }
 
+const Damping* BlockDiagonalSystem::damping() const {
+  const bool all = std::ranges::all_of(
+      blocks_, [](const auto& block) { return block->is_conservative() || block->damping(); });
+  return all && any_has(blocks_, &System::damping) ? this : nullptr;
+}
+
+void BlockDiagonalSystem::friction(const At& at, MutableVec f) const {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index first) {
+    auto of_block = f.segment(first, block.size());
+    if (const Damping* damping = block.damping()) {
+      damping->friction(own, of_block);
+    } else {
+      of_block.setZero();
+    }
+  });
+}
+
+void BlockDiagonalSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
+  assemble(at, c, [](const System& block, const At& own, SymmetricMatrix& of_block) {
+    if (const Damping* damping = block.damping()) damping->damping_matrix(own, of_block);
+  });
+}
+
+bool BlockDiagonalSystem::damping_is_constant() const {
+  return std::ranges::all_of(blocks_, [](const auto& block) {
+    return !block->damping() || block->damping()->damping_is_constant();
+  });
+}
+
+bool BlockDiagonalSystem::has_dashpots() const {
+  const auto air = [](const auto& block) {
+    return block->damping() ? block->damping()->air_damping() : 0;
+  };
+  // Different airs are no alpha M.
+  return std::ranges::any_of(blocks_, [&](const auto& block) {
+    return (block->damping() && block->damping()->has_dashpots()) || air(block) != air(blocks_[0]);
+  });
+}
+
+double BlockDiagonalSystem::air_damping() const {
+  return has_dashpots() ? 0 : blocks_.front()->damping()->air_damping();
+}
+
+std::optional<double> BlockDiagonalSystem::damping_time() const {
+  if (!has_dashpots()) return 0;
+  return {};
+}
+
 bool BlockDiagonalSystem::is_conservative() const {
   return all_have(blocks_, &System::is_conservative);
 }

@@ -12,7 +12,8 @@ namespace qddot {
 // allocate.
 //
 // It has K if all blocks have K, and offers a capability if all blocks offer it. Kinks, Validity
-// and PiecewiseLinear state exceptions; these it offers if any block does.
+// and PiecewiseLinear state exceptions; these it offers if any block does. It offers Damping if
+// that is all that makes forces of blocks depend on velocities.
 class BlockDiagonalSystem final : public CapableSystem {
  public:
   // `blocks`: in the order of their unknowns.
@@ -37,6 +38,7 @@ class BlockDiagonalSystem final : public CapableSystem {
   const PiecewiseLinear* pieces() const override;
   const Validity* validity() const override;
   const Kinks* kinks() const override;
+  const Damping* damping() const override;
   std::span<const std::unique_ptr<System>> blocks() const override { return blocks_; }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override;
@@ -50,6 +52,12 @@ class BlockDiagonalSystem final : public CapableSystem {
   std::optional<double> end_of_validity(const State& from, const State& to) const override;
   Index kink_count() const override;
   void kink_lengths(const ConstVec& q, MutableVec lengths) const override;
+  void friction(const At& at, MutableVec f) const override;
+  void damping_matrix(const At& at, SymmetricMatrix& c) const override;
+  bool damping_is_constant() const override;
+  double air_damping() const override;
+  bool has_dashpots() const override;
+  std::optional<double> damping_time() const override;
 
  private:
   // The blocks' columns follow one another in `k`, and so do their entries: evaluate(block, its

@@ -88,6 +88,27 @@ class Kinks {
   virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
 };
 
+// Damping that is linear in the velocities: f(q, v) = -dV/dq - C(q) v. Rayleigh's dissipation
+// function R = 1/2 v'Cv gives it by Lagrange's equation,
+//   d/dt dL/dv - dL/dq = -dR/dv.
+// So C is symmetric and positive semidefinite, and the energy falls at the rate v'Cv = 2R. The
+// force of such a system has both parts. Where it is given no velocities, it is -dV/dq alone.
+class Damping {
+ public:
+  virtual ~Damping() = default;
+  // Writes f_d = -C(q) v [N] into `f`; q, v, f: n.
+  virtual void friction(const At& at, MutableVec f) const = 0;
+  // Writes C(q) [N s/m] into `c`, which must have the pattern of System::stiffness_pattern().
+  virtual void damping_matrix(const At& at, SymmetricMatrix& c) const = 0;
+  // Whether C is the same at every q.
+  virtual bool damping_is_constant() const = 0;
+  // alpha [1/s] of the air, and whether there is anything else: if not, C = alpha M.
+  virtual double air_damping() const { return 0; }
+  virtual bool has_dashpots() const { return true; }
+  // beta [s], if C = alpha M - beta (SplitStiffness::material_stiffness) everywhere.
+  virtual std::optional<double> damping_time() const { return {}; }
+};
+
 // A system that implements all capabilities above. Its accessors say which of them it has.
 class CapableSystem : public System,
                       public SplitStiffness,
@@ -95,7 +116,8 @@ class CapableSystem : public System,
                       public Laplacian,
                       public PiecewiseLinear,
                       public Validity,
-                      public Kinks {
+                      public Kinks,
+                      public Damping {
  public:
   using System::System;
 };

@@ -8,7 +8,7 @@
 
 namespace qddot {
 
-// The ends and laws of a network's links in little memory: 12 bytes a link in place of 40, and each
+// The ends and laws of a network's links in little memory: 12 bytes a link in place of 48, and each
 // law once that was seen shortly before.
 class CompactLinks {
  public:

@@ -12,6 +12,7 @@ ConstrainedSystem::ConstrainedSystem(std::shared_ptr<const System> system,
       pieces_(system_->pieces()),
       validity_(system_->validity()),
       kinks_(system_->kinks()),
+      damping_(system_->damping()),
       is_held_(std::move(is_held)) {
   for (Index i = 0; i < size(); ++i) {
     if (is_held_[i]) unknowns_.push_back(i);
@@ -34,6 +35,16 @@ void ConstrainedSystem::force(const At& at, MutableVec f) const {
 void ConstrainedSystem::mean_force(const At& a, const At& b, MutableVec f) const {
   discrete_gradient_->mean_force(a, b, f);
   for (const Index i : unknowns_) f[i] = 0;
+}
+
+void ConstrainedSystem::friction(const At& at, MutableVec f) const {
+  damping_->friction(at, f);
+  for (const Index i : unknowns_) f[i] = 0;
+}
+
+void ConstrainedSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
+  damping_->damping_matrix(at, c);
+  clear_held(c);
 }
 
 bool ConstrainedSystem::multiply_stiffness(const ConstVec& q, const ConstVec& x,

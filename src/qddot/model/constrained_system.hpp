@@ -44,6 +44,7 @@ class ConstrainedSystem final : public CapableSystem {
   const Validity* validity() const override { return validity_ ? this : nullptr; }
   const Kinks* kinks() const override { return kinks_ ? this : nullptr; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
+  const Damping* damping() const override { return damping_ ? this : nullptr; }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override;
   void weighted_stiffness(const At& at, double compression_weight,
@@ -61,6 +62,13 @@ class ConstrainedSystem final : public CapableSystem {
     kinks_->kink_lengths(q, lengths);
   }
 
+  void friction(const At& at, MutableVec f) const override;
+  void damping_matrix(const At& at, SymmetricMatrix& c) const override;
+  bool damping_is_constant() const override { return damping_->damping_is_constant(); }
+  double air_damping() const override { return damping_->air_damping(); }
+  bool has_dashpots() const override { return damping_->has_dashpots(); }
+  std::optional<double> damping_time() const override { return damping_->damping_time(); }
+
  private:
   void clear_held(SymmetricMatrix& k) const;
 
@@ -72,6 +80,7 @@ class ConstrainedSystem final : public CapableSystem {
   const PiecewiseLinear* pieces_;
   const Validity* validity_;
   const Kinks* kinks_;
+  const Damping* damping_;
   std::vector<bool> is_held_;
   std::vector<Index> unknowns_;  // the held ones
   std::optional<Split> split_;   // of the system, held likewise

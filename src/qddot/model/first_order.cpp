@@ -21,13 +21,19 @@ FirstOrderPattern::FirstOrderPattern(const System& system) {
   }
   for (Index column = 0; column < n; ++column) {
     rows_.push_back(column);
-    rows_.push_back(n + column);
+    if (system.damping()) {
+      for (SymmetricMatrix::InnerIterator entry(full, column); entry; ++entry) {
+        rows_.push_back(n + entry.row());
+      }
+    } else {
+      rows_.push_back(n + column);
+    }
     column_starts_.push_back(std::ssize(rows_));
   }
 }
 
 void FirstOrderPattern::fill(double alpha, double beta, const Vec& s, const SymmetricMatrix& k,
-                             const Vec& e, double* values) const {
+                             const Vec& e, double* values, const SymmetricMatrix* damping) const {
   const Index n = s.size();
   const double* entries = k.valuePtr();
   const int* source = source_.data();
@@ -37,6 +43,19 @@ void FirstOrderPattern::fill(double alpha, double beta, const Vec& s, const Symm
     for (; p < column_starts_[column + 1]; ++p) values[p] = s[rows_[p] - n] * entries[*source++];
   }
   double* value = values + column_starts_[n];
+  if (damping) {
+    const double* c = damping->valuePtr();
+    source = source_.data();
+    for (Index column = 0; column < n; ++column) {
+      std::int64_t p = column_starts_[n + column];
+      values[p++] = beta;
+      for (; p < column_starts_[n + column + 1]; ++p) {
+        const std::int64_t row = rows_[p] - n;
+        values[p] = (row == column ? e[column] : 0) - s[row] * c[*source++];
+      }
+    }
+    return;
+  }
   for (Index column = 0; column < n; ++column) {
     *value++ = beta;
     *value++ = e[column];

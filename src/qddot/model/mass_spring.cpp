@@ -1,5 +1,7 @@
 #include "qddot/model/mass_spring.hpp"
 
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +13,7 @@
 #include "qddot/model/kernels/springs_by_node.hpp"
 #include "qddot/model/kernels/stiffness_kernel.hpp"
 #include "qddot/model/layout.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 #include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
 #include "qddot/model/split_network.hpp"
@@ -53,15 +56,23 @@ class MassSpring final : public CapableSystem {
 
   void force(const At& at, MutableVec f) const override {
     const VecView& q = at.q;
-    if (by_node_) return by_node_->sum_forces(q, f);
-    f = weight_;
-    springs_->add_forces(
-        [&](const auto& spring) { return spring_force(spring.law, springs_->between(q, spring)); },
-        f);
+    if (by_node_) {
+      by_node_->sum_forces(q, f);
+    } else {
+      f = weight_;
+      springs_->add_forces(
+          [&](const auto& spring) {
+            return spring_force(spring.law, springs_->between(q, spring));
+          },
+          f);
+    }
+    if (is_damped() && at.v.size() > 0) add_friction(at, f);
   }
 
   double force_beside(const At& at, MutableVec f, BesideForce& beside) const override {
-    if (by_node_) return by_node_->sum_forces(at.q, f, beside);
+    if (by_node_ && (!is_damped() || at.v.size() == 0)) {
+      return by_node_->sum_forces(at.q, f, beside);
+    }
     return System::force_beside(at, f, beside);
   }
 
@@ -126,6 +137,29 @@ class MassSpring final : public CapableSystem {
 
   Index stiffness_entries() const override { return entries_; }
 
+  bool is_conservative() const override { return !is_damped(); }
+  const Damping* damping() const override { return is_damped() ? this : nullptr; }
+  void friction(const At& at, MutableVec f) const override {
+    f.setZero();
+    add_friction(at, f);
+  }
+  void damping_matrix(const At& at, SymmetricMatrix& c) const override {
+    if (dashpots_) {
+      dashpots_->material_stiffness(at, c);
+      c.coeffs() = -c.coeffs();
+    } else {
+      c.coeffs().setZero();
+    }
+    if (air_damping_ == 0) return;
+    for (Index i = 0; i < size(); ++i) {  // the diagonal entry is the first of its column
+      c.valuePtr()[c.outerIndexPtr()[i]] += air_damping_ * mass()[i];
+    }
+  }
+  bool damping_is_constant() const override { return !dashpots_ || D == 1 || !has_rest_lengths_; }
+  double air_damping() const override { return air_damping_; }
+  bool has_dashpots() const override { return dashpots_ != nullptr; }
+  std::optional<double> damping_time() const override { return damping_time_; }
+
   const SplitStiffness* split_stiffness() const override { return this; }
   const DiscreteGradient* discrete_gradient() const override { return this; }
   const Laplacian* laplacian() const override { return this; }
@@ -187,7 +221,9 @@ class MassSpring final : public CapableSystem {
       : CapableSystem(masses(network, layout)),
         layout_(std::move(layout)),
         weight_(weights(network, layout_)),
-        constant_energy_(network.constant_energy) {
+        constant_energy_(network.constant_energy),
+        air_damping_(network.air_damping) {
+    note_damping(network, forces);
     note_tension(network);
     directions_ = directions(network, layout_);
     if (forces == Forces::by_vectors ||
@@ -204,6 +240,69 @@ class MassSpring final : public CapableSystem {
     network_ = {.dimension = D,
                 .anchors = std::move(network.anchors),
                 .image_links = std::move(network.image_links)};
+  }
+
+  bool is_damped() const { return dashpots_ || air_damping_ > 0; }
+
+  // Calls see(spring) for each spring of the network.
+  template <class Springs, class See>
+  static void for_each_spring(Springs& network, const See& see) {
+    for (auto& spring : network.links) see(spring);
+    for (auto& spring : network.image_links) see(spring);
+    for (auto& spring : network.anchors) see(spring);
+  }
+
+  // Sets dashpots_: C of a dashpot c is -K_m of a spring of stiffness c without a quartic term. All
+  // springs are in it, so that its pattern is that of K.
+  void note_damping(const Network& network, Forces forces) {
+    bool any = false, is_proportional = true;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for_each_spring(network, [&](const auto& spring) {
+      const SpringLaw& law = spring.law;
+      any = any || law.damping > 0;
+      if (law.stiffness == 0 && law.quartic == 0 && law.damping == 0) return;
+      has_rest_lengths_ = has_rest_lengths_ || (law.damping > 0 && law.rest_length > 0);
+      is_proportional =
+          is_proportional && (law.damping == 0 || (law.stiffness > 0 && law.quartic == 0));
+      const double time = law.damping > 0 ? law.damping / law.stiffness : 0;
+      least = std::min(least, time);
+      most = std::max(most, time);
+    });
+    constexpr double roundings = 8 * machine_epsilon;
+    if (!any) {
+      damping_time_ = 0;
+    } else if (is_proportional && most - least <= roundings * most) {
+      damping_time_ = most;
+    }
+    if (!any) return;
+    Network dashpots{.dimension = D,
+                     .node_mass = network.node_mass,
+                     .links = network.links,
+                     .anchors = network.anchors,
+                     .image_links = network.image_links,
+                     .zero_coordinates = network.zero_coordinates};
+    for_each_spring(dashpots, [](auto& spring) {
+      spring.law = {.stiffness = spring.law.damping, .rest_length = spring.law.rest_length};
+      spring.holds = Holds::always;
+      spring.direction = 0;
+    });
+    dashpots_ = std::make_unique<MassSpring>(std::move(dashpots), forces);
+  }
+
+  void add_friction(const At& at, MutableVec f) const {
+    if (dashpots_) dashpots_->add_dashpots(at.q, at.v, f);
+    if (air_damping_ > 0) f -= air_damping_ * mass().cwiseProduct(at.v);
+  }
+  // Adds the forces of the dashpots whose constants are the stiffnesses of this network.
+  void add_dashpots(const VecView& q, const VecView& v, MutableVec f) const {
+    if (by_node_) return by_node_->add_dashpots(q, v, f);
+    springs_->add_forces(
+        [&](const auto& spring) {
+          SpringLaw law{.rest_length = spring.law.rest_length};
+          law.damping = spring.law.stiffness;
+          return dashpot_force(law, springs_->between(q, spring), springs_->apart(v, spring));
+        },
+        f);
   }
 
   void note_laws(const Network& network) {
@@ -311,7 +410,10 @@ class MassSpring final : public CapableSystem {
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
-  double constant_energy_;
+  double constant_energy_, air_damping_;
+  std::unique_ptr<const MassSpring> dashpots_;  // see note_damping; empty without any
+  bool has_rest_lengths_ = false;               // of springs with dashpots
+  std::optional<double> damping_time_;
   bool linear_ = false;
   Index kinks_ = 0;
   bool has_quartic_ = false;

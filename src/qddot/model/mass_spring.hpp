@@ -53,6 +53,7 @@ struct Network {
   // none.
   std::vector<unsigned> zero_coordinates{};
   Vec load{};                           // constant forces beside the weight [N], D N; empty = none
+  double air_damping = 0;               // alpha [1/s]: each node feels the force -alpha m v
   bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
   bool offers_split = false;            // whether the system offers Split, by `stiff`
 };
@@ -66,8 +67,10 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 //   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x.
 // f and K are sums over springs (see spring.hpp). K has a block for each node and for each pair of
 // nodes that a link joins. It is constant if every law is linear or every spring has a direction.
-// Throws std::invalid_argument for directions in two or three dimensions or beside a quartic term.
-// It does so too if some springs with a rest length have one and others have none.
+// If any spring has a dashpot, or there is air, the force is that of positions minus C(q) v, and
+// the system offers Damping. Throws std::invalid_argument for directions in two or three dimensions
+// or beside a quartic term. It does so too if some springs with a rest length have one and others
+// have none.
 //
 // K's pattern, and what K is summed from, are made when somebody first asks for K, by any thread.
 // So the first such question takes longer than the later ones.

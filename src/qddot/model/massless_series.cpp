@@ -38,7 +38,7 @@ class Joints {
     if (both.size() != 2) return false;
     for (const Touching& one : both) {
       if (!one.folds) return false;
-      if (one.law.quartic > 0 || !(one.law.stiffness > 0)) return false;
+      if (one.law.quartic > 0 || !(one.law.stiffness > 0) || one.law.damping > 0) return false;
     }
     const int d = network_.dimension;
     return network_.load.size() == 0 || network_.load.segment(d * node, d).isZero(0);

@@ -14,6 +14,7 @@ struct SpringLaw {
   double stiffness = 0;    // k [N/m], >= 0
   double rest_length = 0;  // l0 [m], >= 0
   double quartic = 0;      // c [N/m^3], >= 0
+  double damping = 0;      // of a dashpot along the spring [N s/m], >= 0
 
   // Whether the force is linear in the difference of the spring's ends.
   bool is_linear() const { return rest_length == 0 && quartic == 0; }
@@ -118,6 +119,18 @@ Eigen::Matrix<Real, D, D> spring_material_stiffness(const SpringLaw& law,
   if (law.rest_length == 0 || std::abs(l) == 0) return spring_stiffness(law, d);
   const Eigen::Matrix<Real, D, 1> n = d / l;
   return law.tangent(l) * (n * n.transpose());
+}
+
+// The force of a spring's dashpot on x_i [N], where the ends move apart by w = x_j' - x_i' [m/s]:
+// c l' n with l' = n.w, the derivative of Rayleigh's 1/2 c l'^2. A spring of rest length zero may
+// pass through length zero, where it has no direction. So its dashpot resists w in all directions
+// alike, c w. Any other dashpot does so only at length zero.
+template <class Real, int D>
+Eigen::Matrix<Real, D, 1> dashpot_force(const SpringLaw& law, const Eigen::Matrix<Real, D, 1>& d,
+                                        const Eigen::Matrix<Real, D, 1>& w) {
+  const Real square = (d.transpose() * d).value();
+  if (D == 1 || law.rest_length == 0 || std::abs(square) == 0) return law.damping * w;
+  return d * (law.damping * (d.transpose() * w).value() / square);
 }
 
 }  // namespace qddot

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
 #include "qddot/model/layout.hpp"
@@ -89,6 +90,14 @@ class SpringLists {
   }
   Point between(const VecView& q, const EdgeAnchor& anchor) const {
     return anchor.point - layout_.at(q, anchor.i);
+  }
+
+  // The rate of change of d at velocities v.
+  template <class Spring>
+  Point apart(const VecView& v, const Spring& spring) const {
+    if constexpr (std::is_same_v<Spring, Anchor>) return -v.segment<D>(spring.i);
+    if constexpr (std::is_same_v<Spring, EdgeAnchor>) return -layout_.at(v, spring.i);
+    return between(v, spring);
   }
 
   // Adds each spring's force on_i(spring) to its end i in f, and the opposite force to its end j.

@@ -25,10 +25,12 @@ using MutableVec = Eigen::Ref<Vec>;
 using SymmetricMatrix = Eigen::SparseMatrix<double>;
 
 // The state of a system at time t [s]: unknown positions q [m], node after node (x0 y0 z0 x1 ...),
-// and velocities v = q' [m/s]. Both have length n = System::size().
+// and velocities v = q' [m/s]. Both have length n = System::size(). `dissipated` is the energy that
+// damping has taken on the way [J], by the method's own quadrature; a run adds to it.
 struct State {
   double t = 0;
   Vec q, v;
+  double dissipated = 0;
 };
 
 // A vector of numbers that is read in place: those of a Vec, or of a part of one, which must
@@ -74,6 +76,7 @@ class Laplacian;
 class PiecewiseLinear;
 class Validity;
 class Kinks;
+class Damping;
 struct Split;
 
 // A mechanical system with the Lagrangian L = T - V, T = 1/2 v'Mv, as in the lecture. It gives M,
@@ -146,6 +149,7 @@ class System {
   virtual const PiecewiseLinear* pieces() const { return nullptr; }
   virtual const Validity* validity() const { return nullptr; }
   virtual const Kinks* kinks() const { return nullptr; }
+  virtual const Damping* damping() const { return nullptr; }
   // The stiff and the soft forces. A system of blocks has none; each of its blocks may.
   virtual const Split* split() const { return nullptr; }
   // The systems that no force couples, in order, each with a run of consecutive unknowns of its

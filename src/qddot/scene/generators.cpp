@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "qddot/scene/generators/ranges.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 // One line a generator; each is defined in the file of its name.
@@ -26,8 +27,21 @@ namespace qddot {
 #define QDDOT_DECLARE(generator) Generator generator();
 QDDOT_GENERATORS(QDDOT_DECLARE)
 
+namespace {
+
+// Adds the parameters that every generator takes.
+Generator with_damping(Generator generator) {
+  generator.parameters.push_back(
+      {"damping_time", 0, 0, most, "c/k of a dashpot beside each spring in s"});
+  generator.parameters.push_back(
+      {"air_damping", 0, 0, most, "alpha of the air's force -alpha m v in 1/s"});
+  return generator;
+}
+
+}  // namespace
+
 const std::vector<Generator>& generators() {
-#define QDDOT_CALL(generator) generator(),
+#define QDDOT_CALL(generator) with_damping(generator()),
   static const std::vector<Generator> all = {QDDOT_GENERATORS(QDDOT_CALL)};
   return all;
 }
@@ -71,6 +85,8 @@ Scene generate(const Generator& generator, const GeneratorValues& values, const 
   require_within(limits, generator.size(complete), source);
   Scene scene = generator.draw(complete);
   scene.name = generator.name;
+  scene.air_damping = complete.at("air_damping");
+  damp_springs(complete.at("damping_time"), scene);
   validate(scene, source);
   return scene;
 }

@@ -141,12 +141,25 @@ double Model::energy(const State& state) const {
   double energy = total_energy(*pieces_->system, state) + pieces_->static_energy;
   for (const reduce::Flying& flying : pieces_->flying) {
     const Node& node = pieces_->nodes[flying.node];
-    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - flying.gravity.dot(node.position));
+    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - flying.gravity.dot(node.position) -
+                           flying.dissipated(state.t));
   }
   for_falling(pieces_->parts, state, [&](const Fall& fall, const Part::Moments& moments) {
     energy += moments.momentum.dot(fall.velocity_at(state.t)) +
-              0.5 * fall.mass * fall.velocity.squaredNorm() - fall.gravity.dot(moments.first);
+              0.5 * fall.mass * fall.velocity.squaredNorm() - fall.gravity.dot(moments.first) -
+              fall.mass * fall.dissipated(state.t);
   });
+  return energy;
+}
+
+double Model::dissipated(const State& state) const {
+  double energy = state.dissipated;
+  for (const reduce::Flying& flying : pieces_->flying) {
+    energy += pieces_->nodes[flying.node].mass * flying.dissipated(state.t);
+  }
+  for (const Part& part : pieces_->parts) {
+    energy += part.fall().mass * part.fall().dissipated(state.t);
+  }
   return energy;
 }
 

@@ -70,6 +70,9 @@ class Model {
   double potential(const State& state) const;
   // The sum of both [J], without the rounding of terms that cancel if something falls.
   double energy(const State& state) const;
+  // The energy that dashpots and air have taken up to state.t [J]: state.dissipated, and that of
+  // motions in closed form. What is left is energy(state).
+  double dissipated(const State& state) const;
 
   // Massless nodes that have unknowns, ascending: most methods cannot run them.
   std::vector<std::size_t> massless_nodes() const;

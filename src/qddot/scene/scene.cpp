@@ -61,6 +61,7 @@ void check_spring(const Entry& entry, const Spring& spring, const std::vector<No
   entry.check_not_negative("stiffness", spring.law.stiffness);
   entry.check_not_negative("rest_length", spring.law.rest_length);
   entry.check_not_negative("quartic", spring.law.quartic);
+  entry.check_not_negative("damping", spring.law.damping);
   if (spring.law.rest_length > 0 && (nodes[j].position - nodes[i].position).norm() == 0)
     entry.refuse("rest_length",
                  fmt::format("{} is not allowed as nodes {} and {} coincide; allowed is 0",
@@ -122,6 +123,18 @@ std::vector<bool> nodes_on_springs(const Scene& scene) {
   return is_held;
 }
 
+bool is_damped(const Scene& scene) {
+  return scene.air_damping > 0 || std::ranges::any_of(scene.springs, [](const Spring& spring) {
+           return spring.law.damping > 0;
+         });
+}
+
+void damp_springs(double damping_time, Scene& scene) {
+  for (Spring& spring : scene.springs) {
+    if (spring.law.damping == 0) spring.law.damping = damping_time * spring.law.stiffness;
+  }
+}
+
 void validate(const Scene& scene, const std::string& source) {
   const Entry whole{source};
   if (scene.dimension < 1 || scene.dimension > 3)
@@ -130,6 +143,7 @@ void validate(const Scene& scene, const std::string& source) {
   whole.check_finite("gravity", scene.gravity);
   if (scene.until) whole.check_positive("until", *scene.until);
   if (scene.stiff_above) whole.check_positive("stiff_above", *scene.stiff_above);
+  whole.check_not_negative("air_damping", scene.air_damping);
   for (std::size_t i = 0; i < scene.nodes.size(); ++i)
     check_node({source, "nodes", i}, scene.nodes[i]);
   for (std::size_t i = 0; i < scene.springs.size(); ++i)
@@ -162,6 +176,11 @@ std::string content_hash(const Scene& scene) {
   // Likewise loads.
   if (has_loads(scene)) {
     for (const Node& node : scene.nodes) hash.add(node.acting_load());
+  }
+  // Likewise damping.
+  if (is_damped(scene)) {
+    hash.add(scene.air_damping);
+    for (const Spring& spring : scene.springs) hash.add(spring.law.damping);
   }
   return hash.digits();
 }

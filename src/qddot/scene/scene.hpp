@@ -55,6 +55,7 @@ struct Scene {
   // Springs with more stiffness [N/m] are stiff, for methods that treat their forces apart
   // (Split). If missing, none are named. Changes no motion.
   std::optional<double> stiff_above{};
+  double air_damping = 0;  // alpha [1/s]: air takes the force -alpha m v from each node
   // Sentences that tell the user how the scene was read. Changes no motion.
   std::vector<std::string> warnings{};
 };
@@ -63,6 +64,12 @@ struct Scene {
 inline bool is_stiff(const SpringLaw& law, std::optional<double> stiff_above) {
   return stiff_above && law.stiffness > *stiff_above;
 }
+
+// Whether anything takes energy from the motion: a dashpot or the air.
+bool is_damped(const Scene& scene);
+
+// Sets the dashpot of each spring that has none to beta times its stiffness [N s/m]; beta in s.
+void damp_springs(double damping_time, Scene& scene);
 
 // Whether a node that moves has a load.
 inline bool has_loads(const Scene& scene) {
@@ -76,11 +83,10 @@ std::vector<bool> nodes_on_springs(const Scene& scene);
 // Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
 // unless
 //   every number is finite, and the dimension is 1, 2 or 3;
-//   masses, stiffnesses and rest lengths are not negative; `until` and `stiff_above` are above 0;
-//   each spring joins two different existing nodes, which are apart if its rest_length > 0 (else it
-//   has no direction);
-//   a node with a load has mass, a pin, or a spring that pulls;
-//   each face has three different existing nodes.
+//   masses, stiffnesses, rest lengths and dampings are not negative; `until` and `stiff_above` are
+//   above 0; each spring joins two different existing nodes, which are apart if its rest_length > 0
+//   (else it has no direction); a node with a load has mass, a pin, or a spring that pulls; each
+//   face has three different existing nodes.
 void validate(const Scene& scene, const std::string& source);
 
 // A hash of everything in the scene that decides its motion, so not of its name; the same on every

@@ -69,6 +69,7 @@ std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& no
   const Values stiffness("stiffness", a.stiffness, count);
   const Values rest_length("rest_length", is_drawn ? none : a.rest_length, count);
   const Values quartic("quartic", a.quartic.size() == 0 ? none : a.quartic, count);
+  const Values damping("damping", a.damping.size() == 0 ? none : a.damping, count);
   std::vector<Spring> springs;
   springs.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -80,7 +81,8 @@ std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& no
     springs.push_back({{from, to},
                        {.stiffness = stiffness[i],
                         .rest_length = is_drawn ? length : rest_length[i],
-                        .quartic = quartic[i]}});
+                        .quartic = quartic[i],
+                        .damping = damping[i]}});
   }
   return springs;
 }
@@ -99,6 +101,7 @@ Scene scene_of(const SceneArrays& arrays) {
                  fmt::format("{}", dimension));
     scene.gravity.head(dimension) = arrays.gravity;
   }
+  scene.air_damping = arrays.air_damping;
   scene.nodes = nodes_of(arrays);
   scene.springs = springs_of(arrays, scene.nodes);
   validate(scene, scene.name);

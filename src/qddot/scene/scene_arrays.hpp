@@ -21,6 +21,8 @@ struct SceneArrays {
   Eigen::MatrixXd load{};                             // as positions [N]; empty: none
   Eigen::VectorXd rest_length{};  // [m], of each spring or of all; empty: its length as given
   Eigen::VectorXd quartic{};      // [N/m^3], likewise; empty: none
+  Eigen::VectorXd damping{};      // of dashpots [N s/m], likewise; empty: none
+  double air_damping = 0;         // [1/s]
 };
 
 // Makes the scene of these arrays. Throws InvalidInput, in a sentence that names array and entry,

@@ -28,24 +28,31 @@ Node node_in(const TomlTable& table, int dimension) {
 }
 
 Spring spring_in(const TomlTable& table, const std::vector<Node>& nodes) {
-  table.allow_keys({"nodes", "stiffness", "rest_length", "quartic"});
+  table.allow_keys({"nodes", "stiffness", "rest_length", "quartic", "damping"});
   const auto [i, j] = table.node_pair("nodes", nodes.size());
   const double distance = (nodes[j].position - nodes[i].position).norm();
   return {.nodes = {i, j},
           .law = {.stiffness = table.number("stiffness", not_negative),
                   .rest_length = table.number_or(distance, "rest_length", not_negative),
-                  .quartic = table.number_or(0, "quartic", not_negative)}};
+                  .quartic = table.number_or(0, "quartic", not_negative),
+                  .damping = table.number_or(0, "damping", not_negative)}};
 }
 
 void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits, Scene& scene) {
-  file.allow_keys(
-      {"name", "dimension", "gravity", "until", "start", "stiff_above", "nodes", "springs"});
+  file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "air_damping",
+                   "damping_time", "nodes", "springs"});
   scene.dimension = file.integer("dimension", 1, 3);
   const std::vector<TomlTable> nodes = file.tables("nodes"), springs = file.tables("springs");
   require_within(limits, {nodes.size(), springs.size()}, file.place());
   for (const TomlTable& table : nodes) scene.nodes.push_back(node_in(table, scene.dimension));
   if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
   for (const TomlTable& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));
+}
+
+// The keys of a scene, of [mesh] and of [generator]. One in the table is for the whole scene.
+void add_damping(const TomlTable& table, Scene& scene) {
+  if (table.has("air_damping")) scene.air_damping = table.number("air_damping", not_negative);
+  if (table.has("damping_time")) damp_springs(table.number("damping_time", not_negative), scene);
 }
 
 std::string generator_names() {
@@ -138,12 +145,15 @@ Scene parse_scene(const std::string& text, const std::string& path,
   require_one_origin(file);
   Scene scene;
   if (file.has("generator")) {
-    file.allow_keys({"name", "until", "start", "stiff_above", "generator"});
+    file.allow_keys(
+        {"name", "until", "start", "stiff_above", "air_damping", "damping_time", "generator"});
     scene = generated(file.table("generator"), limits);
   } else if (file.has("mesh")) {
-    file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "mesh"});
+    file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "air_damping",
+                     "damping_time", "mesh"});
     if (file.has("dimension")) file.integer("dimension", 3, 3);
     add_mesh(file.table("mesh"), folder, read, limits, scene);
+    add_damping(file.table("mesh"), scene);
   } else {
     add_nodes_and_springs(file, limits, scene);
   }
@@ -152,6 +162,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
   if (file.has("gravity")) scene.gravity = file.vector("gravity", scene.dimension);
   if (file.has("stiff_above")) scene.stiff_above = file.number("stiff_above", positive);
   scene.starts_at_equilibrium = starts_at_equilibrium(file);
+  add_damping(file, scene);
   validate(scene, path);
   warn_of_loose_nodes(scene);
   warn_of_carried_loads(scene);

@@ -110,6 +110,7 @@ void add_spring(const Spring& spring, TomlText& out) {
   out.line("stiffness", spring.law.stiffness);
   out.line("rest_length", spring.law.rest_length);
   if (!is_plain_zero(spring.law.quartic)) out.line("quartic", spring.law.quartic);
+  if (!is_plain_zero(spring.law.damping)) out.line("damping", spring.law.damping);
 }
 
 }  // namespace
@@ -128,6 +129,7 @@ std::string to_toml(const Scene& scene, std::size_t most) {
   if (scene.until) out.line("until", *scene.until);
   out.line("start", scene.starts_at_equilibrium ? "equilibrium" : "drawn");
   if (scene.stiff_above) out.line("stiff_above", *scene.stiff_above);
+  if (!is_plain_zero(scene.air_damping)) out.line("air_damping", scene.air_damping);
   for (const Node& node : scene.nodes) {
     add_node(node, scene.dimension, out);
     require_readable();

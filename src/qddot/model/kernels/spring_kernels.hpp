@@ -149,6 +149,10 @@ struct SpringKernels {
   // not.
   void (*stiffness_row_sums)(const SpringTable&, const Positions&, const Offset&, double* sums,
                              int from, int end);
+  // f = offset + the forces of dashpots whose constants are the springs' stiffnesses. `velocities`
+  // are laid out as positions, and zero at fixed points.
+  void (*dashpots)(const SpringTable&, const Positions&, const Positions& velocities, const Offset&,
+                   double* f, int from, int end);
 };
 
 // Returns the version in use for 1, 2 or 3 dimensions; nullptr if it has no such roots.

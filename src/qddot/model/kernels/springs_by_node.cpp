@@ -226,11 +226,24 @@ Offset SpringsByNode<D>::no_offset(MutableVec numbers) {
 
 template <int D>
 void SpringsByNode<D>::multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const {
+  const Positions moved = placed_beside(x);
+  kernels_->stiffness_product(table(), placed(q, 0), moved, no_offset(y), y.data(), 0,
+                              slices_.count());
+}
+
+template <int D>
+void SpringsByNode<D>::add_dashpots(const VecView& q, const VecView& v, MutableVec f) const {
+  const Positions velocities = placed_beside(v);
+  const Offset own{f.data(), nullptr};
+  kernels_->dashpots(table(), placed(q, 0), velocities, own, f.data(), 0, slices_.count());
+}
+
+template <int D>
+Positions SpringsByNode<D>::placed_beside(const VecView& x) const {
   const Positions moved = placed(x, 1);
   const int first = slices_.rows(), points = static_cast<int>(points_.size());
   for (int place = first; place < first + points; ++place) place_extra(moved, place, {});
-  kernels_->stiffness_product(table(), placed(q, 0), moved, no_offset(y), y.data(), 0,
-                              slices_.count());
+  return moved;
 }
 
 template <int D>

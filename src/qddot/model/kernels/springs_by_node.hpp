@@ -53,6 +53,10 @@ class SpringsByNode {
   void multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const;
   void sum_stiffness_rows(const VecView& q, MutableVec sums) const;
 
+  // Adds the forces of dashpots [N] at q and v to f. Their constants [N s/m] are the stiffnesses of
+  // this network's springs, which must have no quartic terms. q, v, f: n.
+  void add_dashpots(const VecView& q, const VecView& v, MutableVec f) const;
+
   // Calls action(positions at q, from, end) for slices [from, end) until all are done, in several
   // OpenMP threads if there are enough springs. The calls must not depend on each other.
   template <class Action>
@@ -76,6 +80,8 @@ class SpringsByNode {
   Positions memory(int which = 0) const;
   // The same with all of them at q.
   Positions placed(const VecView& q, int which = 0) const;
+  // The same for a vector that is zero at fixed points, in the second memory.
+  Positions placed_beside(const VecView& x) const;
   // Places the points that are no nodes: those that are fixed, and the images of parts [from, end),
   // whose slices must have their places.
   void place_points(const Positions& positions) const;

@@ -31,6 +31,7 @@ struct DrawnPart {
       Eigen::Vector3d::Zero();  // zero where there is nothing that it could pull
   double gravity_noise = 0;     // the size of gravity [m/s^2] below which it is rounding
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
+  double air_damping = 0;       // alpha [1/s], set by the caller
   bool offers_split = false;    // whether its system is to offer Split
 
   // Whether a load is not zero.

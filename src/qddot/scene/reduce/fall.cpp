@@ -40,7 +40,7 @@ void let_fall(DrawnPart& drawn) {
   if (!mean.allFinite()) return;
   const Eigen::Vector3d mean_load = load / mass;
   if (!mean_load.allFinite()) return;
-  drawn.fall = {mass, mean, drawn.gravity + mean_load};
+  drawn.fall = {{mean, drawn.gravity + mean_load, drawn.air_damping}, mass};
   for (Eigen::Vector3d& v : drawn.v) v -= mean;
   drawn.gravity = -mean_load;
   drawn.gravity_noise = rounding * (size_of_loads / mass);

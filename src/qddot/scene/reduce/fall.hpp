@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "qddot/scene/reduce/flight.hpp"
 
 namespace qddot::reduce {
 
@@ -18,14 +18,12 @@ struct DrawnPart;
 //   T = T(y') + P.D' + 1/2 M |D'|^2,  V = V_y - a.S - M a.D.
 // P = sum m y' and S = sum m y remain because a run keeps P = 0 only to rounding. The terms of
 // T + V in D alone are 1/2 M |V0|^2 at every t.
-struct Fall {
-  double mass = 0;                                     // M [kg]; 0: there is no such frame
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // V0 [m/s]
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();   // a [m/s^2]
-
-  bool moves() const { return !velocity.isZero(0) || !gravity.isZero(0); }
-  Eigen::Vector3d displacement(double t) const { return t * velocity + (0.5 * t * t) * gravity; }
-  Eigen::Vector3d velocity_at(double t) const { return velocity + t * gravity; }
+//
+// Dashpots know differences of velocities only, and change nothing here. Air of alpha takes
+// -alpha m (y' + D'): the centre of mass feels -alpha M D', and y feels -alpha m y'. So D is a
+// Flight in air. The sum in D alone then falls by M Flight::dissipated(t).
+struct Fall : Flight {
+  double mass = 0;  // M [kg]; 0: there is no such frame
 };
 
 // Turns the part's velocities and gravity into those in the frame that falls with it, and stores

@@ -84,6 +84,7 @@ class FoldedSprings {
       const PartSprings::One other = drawn_.springs[more];
       sum.law.stiffness += other.law.stiffness;
       sum.law.quartic += other.law.quartic;
+      sum.law.damping += other.law.damping;
       sum.stiff = sum.stiff || other.stiff;
     }
     return sum;

@@ -249,7 +249,8 @@ class MirrorSearch {
     const SpringLaw &one = drawn.law, &two = image.law;
     return nearly(one.rest_length, two.rest_length, tolerance_) &&
            nearly(one.stiffness, two.stiffness, rounding * one.stiffness) &&
-           nearly(one.quartic, two.quartic, rounding * one.quartic) && drawn.holds == image.holds;
+           nearly(one.quartic, two.quartic, rounding * one.quartic) &&
+           nearly(one.damping, two.damping, rounding * one.damping) && drawn.holds == image.holds;
   }
 
   const DrawnPart& drawn_;

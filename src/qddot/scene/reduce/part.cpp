@@ -106,6 +106,7 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
   const auto count = std::ssize(layout_);
   network.node_mass = Vec::Zero(count);
   network.load = Vec::Zero(axes * count);
+  network.air_damping = drawn.air_damping;
   const Eigen::Vector3d g = mirrors_.frame.direction(drawn.gravity);
   nodes_.reserve(drawn.free);
   masses_.reserve(drawn.free);

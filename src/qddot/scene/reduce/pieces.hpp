@@ -11,14 +11,10 @@
 
 namespace qddot::reduce {
 
-// A node that moves in closed form, x = x0 + v0 t + 1/2 a t^2, a = g + load/m. It is on no spring,
-// or in a part that rests in its falling frame.
-struct Flying {
+// A node that moves in closed form, x = x0 + D(t) with a = g + load/m. It is on no spring, or in a
+// part that rests in its falling frame.
+struct Flying : Flight {
   std::size_t node;
-  Eigen::Vector3d velocity, gravity;  // v0 [m/s], a [m/s^2]
-
-  Eigen::Vector3d displacement(double t) const { return t * velocity + (0.5 * t * t) * gravity; }
-  Eigen::Vector3d velocity_at(double t) const { return velocity + t * gravity; }
 };
 
 // The pieces that a Model consists of: a system with its start, and what leads from the unknowns

@@ -51,7 +51,8 @@ class Condenser {
     if (!is_massless(node) || touching_[node].size() != 2 || !nodes_[node].load.isZero(0))
       return false;
     for (const std::size_t e : touching_[node]) {
-      if (springs_[e].law.quartic > 0 || springs_[e].law.stiffness == 0) return false;
+      const SpringLaw& law = springs_[e].law;
+      if (law.quartic > 0 || law.stiffness == 0 || law.damping > 0) return false;
     }
     return true;
   }

@@ -11,7 +11,9 @@ namespace {
 std::size_t low(const Spring& spring) { return std::min(spring.nodes[0], spring.nodes[1]); }
 std::size_t high(const Spring& spring) { return std::max(spring.nodes[0], spring.nodes[1]); }
 
-bool acts(const Spring& spring) { return spring.law.stiffness > 0 || spring.law.quartic > 0; }
+bool acts(const Spring& spring) {
+  return spring.law.stiffness > 0 || spring.law.quartic > 0 || spring.law.damping > 0;
+}
 
 // Springs with the same lower node and the same key may be added.
 auto key(const Spring& spring) {
@@ -21,7 +23,7 @@ auto key(const Spring& spring) {
 // For each spring that is the first of its key, the sum; else a spring without stiffness.
 std::vector<Spring> sums_of(const std::vector<Spring>& springs, const Grouped& by_low) {
   std::vector<Spring> sums = springs;
-  for (Spring& sum : sums) sum.law.stiffness = sum.law.quartic = 0;
+  for (Spring& sum : sums) sum.law.stiffness = sum.law.quartic = sum.law.damping = 0;
   std::vector<int> order;
   for (int node = 0; node < by_low.groups(); ++node) {
     order.assign(by_low[node].begin(), by_low[node].end());
@@ -35,6 +37,7 @@ std::vector<Spring> sums_of(const std::vector<Spring>& springs, const Grouped& b
       const Spring& next = spring(order[i]);
       sum.law.stiffness += next.law.stiffness;
       sum.law.quartic += next.law.quartic;
+      sum.law.damping += next.law.damping;
       sum.stiff = sum.stiff || next.stiff;
     }
   }

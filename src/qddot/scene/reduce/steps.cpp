@@ -134,9 +134,12 @@ std::vector<PartMembers> Steps::divide() {
     if (is_condensed[first]) continue;  // it is on no spring any more
     if (members.springs.empty() && reductions_.has(Reduction::free_flight)) {
       const Node& node = pieces_.nodes[first];
-      Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
-      if (node.mass > 0) acceleration = scene_.gravity + node.load / node.mass;
-      pieces_.flying.push_back({first, node.velocity, acceleration});
+      Flight flight{.velocity = node.velocity};
+      if (node.mass > 0) {
+        flight.gravity = scene_.gravity + node.load / node.mass;
+        flight.air_damping = scene_.air_damping;
+      }
+      pieces_.flying.push_back({flight, first});
       flying.push_back(first);
     } else {
       parts.push_back(std::move(members));
@@ -187,13 +190,14 @@ void Steps::build(std::vector<PartMembers> parts) {
 
 std::optional<DrawnPart> Steps::moving_part(PartMembers members) {
   DrawnPart drawn = drawn_part(std::move(members), pieces_.nodes, springs(), scene_.gravity);
+  drawn.air_damping = scene_.air_damping;
   drawn.offers_split = scene_.stiff_above.has_value();
   if (!reductions_.has(Reduction::falling)) return drawn;
   let_fall(drawn);
   if (!rests(drawn)) return drawn;
   ++resting_;
   for (const std::size_t node : drawn.nodes) {
-    pieces_.flying.push_back({node, drawn.fall.velocity, drawn.fall.gravity});
+    pieces_.flying.push_back({drawn.fall, node});
   }
   return {};
 }

@@ -1,5 +1,6 @@
 #include "qddot/model/kernels/spring_kernels.hpp"
 
+#include "qddot/model/kernels/vectors/dashpots.hpp"
 #include "qddot/model/kernels/vectors/energy.hpp"
 #include "qddot/model/kernels/vectors/force.hpp"
 #include "qddot/model/kernels/vectors/place.hpp"
@@ -23,7 +24,8 @@ constexpr SpringKernels kernels() {
             .mean_force = mean_force<D, of_lengths>,
             .stiffness = stiffness<D, of_lengths>,
             .stiffness_product = stiffness_product<D, of_lengths>,
-            .stiffness_row_sums = stiffness_row_sums<D, of_lengths>};
+            .stiffness_row_sums = stiffness_row_sums<D, of_lengths>,
+            .dashpots = dashpots<D>};
   } else {
     return {};
   }
