@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "qddot/algebra/dense_pairs.hpp"
+#include "qddot/analysis/damped_mode.hpp"
+#include "qddot/model/capabilities.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
@@ -20,10 +22,18 @@ double cosine(bool grows, double x) { return grows ? std::cosh(x) : std::cos(x);
 
 }  // namespace
 
+bool LinearMotion::has_modes(const System& system) {
+  const Damping* damping = system.damping();
+  return damping ? damping->damping_time().has_value() : system.is_conservative();
+}
+
 LinearMotion::LinearMotion(const System& system)
     : system_(system), root_mass_(system.mass().cwiseSqrt()) {
   if (!system.has_stiffness() || !system.stiffness_is_constant() || system.has_massless()) {
     throw std::invalid_argument("the exact motion needs a constant K and positive masses");
+  }
+  if (!has_modes(system)) {
+    throw std::invalid_argument("modes stay apart only if C = alpha M - beta K");
   }
   if (system.size() == 0) return;
   SymmetricMatrix k = system.stiffness_pattern();
@@ -35,6 +45,9 @@ LinearMotion::LinearMotion(const System& system)
   const double least = roundings_of_zero * machine_epsilon * static_cast<double>(system.size()) *
                        modes.values.lpNorm<Eigen::Infinity>();
   squares_ = (modes.values.array() < 0 && modes.values.array() > -least).select(0, modes.values);
+  if (const Damping* damping = system.damping()) {
+    gamma_ = ((damping->air_damping() + *damping->damping_time() * squares_.array()) / 2).matrix();
+  }
 }
 
 State LinearMotion::after(const State& from, double duration) const {
@@ -51,12 +64,17 @@ void LinearMotion::propagate(const State& from, double duration, State& to,
   f.resize(from.q.size());
   y.resize(squares_.size());
   rate.resize(squares_.size());
-  system_.force(from.q, f);
+  system_.force({from.t, from.q}, f);
   y = root_mass_.cwiseProduct(from.v);
   velocity.noalias() = u_.transpose() * y;  // y'(0)
   f = f.cwiseQuotient(root_mass_);
   push.noalias() = u_.transpose() * f;  // U'b
-  for (Index j = 0; j < squares_.size(); ++j) {
+  for (Index j = 0; j < gamma_.size(); ++j) {
+    const auto [c, s, g] = mode_response(gamma_[j], squares_[j], t);
+    y[j] = velocity[j] * s + push[j] * g;
+    rate[j] = velocity[j] * c + push[j] * s;
+  }
+  for (Index j = 0; gamma_.size() == 0 && j < squares_.size(); ++j) {
     const bool grows = squares_[j] < 0;
     const double wt = std::sqrt(std::abs(squares_[j])) * t, half = sinc(grows, wt / 2);
     y[j] = velocity[j] * t * sinc(grows, wt) + push[j] * 0.5 * t * t * half * half;

@@ -11,11 +11,14 @@ namespace qddot {
 //   y(t) = y'(0) sin(wt)/w + b (1 - cos wt)/w^2,
 // or y'(0) t + b t^2/2 if w = 0. Where V falls along a mode, w^2 = -s^2 is negative and
 //   y(t) = y'(0) sinh(st)/s + b (cosh st - 1)/s^2.
+// Where C = alpha M - beta K, as damping along the springs in proportion to their stiffness and air
+// give it, modes stay apart, each damped by gamma = (alpha + beta w^2)/2 (see damped_mode.hpp).
 // There is no step and no step error, only the rounding of the dense eigenproblem. That takes
 // O(n^3) time once and n^2 memory; a motion is O(n^2). The system must outlive it.
 class LinearMotion {
  public:
-  // Throws std::invalid_argument unless K is constant and every mass is positive.
+  // Throws std::invalid_argument unless K is constant and every mass is positive. So it does if the
+  // system has another Damping.
   explicit LinearMotion(const System& system);
 
   // The workspace of a motion.
@@ -28,11 +31,15 @@ class LinearMotion {
   // The same into `to`, another state; allocates nothing if both have been used before.
   void propagate(const State& from, double duration, State& to, Scratch& scratch) const;
 
+  // Whether modes stay apart: there is no damping, or one of that kind.
+  static bool has_modes(const System& system);
+
  private:
   const System& system_;
   Vec root_mass_;      // M^1/2
   Eigen::MatrixXd u_;  // modes, one in each column
   Vec squares_;        // w^2 [rad^2/s^2]
+  Vec gamma_;          // [1/s]; empty without damping
 };
 
 }  // namespace qddot

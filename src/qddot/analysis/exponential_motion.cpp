@@ -1,0 +1,47 @@
+#include "qddot/analysis/exponential_motion.hpp"
+
+#include <stdexcept>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "qddot/model/capabilities.hpp"
+
+namespace qddot {
+
+ExponentialMotion::ExponentialMotion(const System& system, double duration)
+    : system_(system), duration_(duration) {
+  const Damping* damping = system.damping();
+  if (!system.has_stiffness() || !system.stiffness_is_constant() || system.has_massless() ||
+      !damping || !damping->damping_is_constant()) {
+    throw std::invalid_argument("the exact motion needs constant K and C and positive masses");
+  }
+  const Index n = system.size();
+  const Vec anywhere = Vec::Zero(n), per_mass = system.mass().cwiseInverse();
+  SymmetricMatrix matrix = system.stiffness_pattern();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  const auto per_mass_times = [&](const SymmetricMatrix& m) -> Eigen::MatrixXd {
+    return per_mass.asDiagonal() *
+           Eigen::MatrixXd(Eigen::SparseMatrix<double>(m.selfadjointView<Eigen::Lower>()));
+  };
+  system.stiffness(anywhere, matrix);
+  all.block(n, 0, n, n) = duration * per_mass_times(matrix);
+  damping->damping_matrix(anywhere, matrix);
+  all.block(n, n, n, n) = -duration * per_mass_times(matrix);
+  all.block(0, n, n, n).diagonal().setConstant(duration);
+  all.block(n, 2 * n, n, n).diagonal().setConstant(duration);
+  const Eigen::MatrixXd exponential = all.exp();
+  of_v_ = exponential.block(0, n, 2 * n, n);
+  of_push_ = exponential.block(0, 2 * n, 2 * n, n);
+}
+
+void ExponentialMotion::propagate(const State& from, State& to) const {
+  const Index n = system_.size();
+  Vec push(n);
+  system_.force({from.t, from.q}, push);
+  push = push.cwiseQuotient(system_.mass());
+  const Vec z = of_v_ * from.v + of_push_ * push;
+  to.t = from.t + duration_;
+  to.q = from.q + z.head(n);
+  to.v = z.tail(n);
+}
+
+}  // namespace qddot
