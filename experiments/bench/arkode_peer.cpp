@@ -38,7 +38,7 @@ class Erk4 final : public Peer {
     const State& initial = problem.scene.initial();
     const Index n = initial.q.size();
     const Context context = make_context();
-    const Vector y = make_stock_vector(n, context.get()), atol = clone(y.get());
+    const Vector y = make_stock_vector(2 * n, context.get()), atol = clone(y.get());
     Halves(y.get()).q = initial.q;
     Halves(y.get()).v = initial.v;
     Halves(atol.get()).q.setConstant(rtol * problem.length);

@@ -36,12 +36,18 @@ class Bdf2 final : public ImplicitStep {
     free_ = known_ + c * h * (now.v + back * (now.v - last_.v));
     u_ = free_;
     if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
+    if (is_damped()) set_velocity(1 / (c * h), -known_ / (c * h));
     if (const Outcome outcome = solve_stage(now.q, next.t, c * c * h * h);
         outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
     next.v = (u_ - known_) / (c * h);
+    if (is_damped()) {
+      next.dissipated =
+          now.dissipated + back * (now.dissipated - last_.dissipated) + c * h * stage_power(now.q);
+      last_.dissipated = now.dissipated;
+    }
     last_.q = now.q;
     last_.v = now.v;
     last_h_ = h;
@@ -62,9 +68,11 @@ Method bdf2() {
       .summary = "two-step backward differentiation; one solve a step, damps fast vibrations",
       .source = "Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.1, III.5",
       .order = 2,
-      .traits = {Trait::implicit, Trait::accepts_massless, Trait::remembers_steps},
+      .traits = {Trait::implicit, Trait::accepts_massless, Trait::accepts_massless_dashpots,
+                 Trait::remembers_steps},
       .needs = {Need::conservative, Need::stiffness},
       .takes = {Option::solve_tolerance, Option::solver},
+      .damped = Damped::by_any,
       .make = create<Bdf2>};
 }
 

@@ -37,6 +37,8 @@ Method blanes_moan4() {
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &blanes_moan4_splitting(),
+          .damped = Damped::by_air,
+          .why_not_damped = "it drifts back in time, where dashpots add energy",
           .make = create_splitting};
 }
 

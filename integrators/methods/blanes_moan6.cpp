@@ -40,6 +40,8 @@ Method blanes_moan6() {
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &blanes_moan6_splitting(),
+          .damped = Damped::by_air,
+          .why_not_damped = "it drifts back in time, where dashpots add energy",
           .make = create_splitting};
 }
 

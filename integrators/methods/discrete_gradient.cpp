@@ -7,7 +7,8 @@
 // equation:
 //   M (u - h v_n) = h^2/2 F(q_n, q_n + u)
 // Its Newton matrix is taken as M - h^2/4 K(q_n + u/2). There the derivative of F is K/2, up to
-// terms of first order in u. The method has order 2 and is time-reversible. It keeps energy, linear
+// terms of first order in u. Dashpots and air add -C(q_n + u/2) u/h to F, and so take the energy
+// u'Cu/h exactly. The method has order 2 and is time-reversible. It keeps energy, linear
 // and angular momentum up to what the nonlinear solve leaves.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -28,11 +29,13 @@ class EnergyMomentum final : public ImplicitStep {
     const double s = h * h / 2;
     free_ = h * now.v;
     u_ = free_ + s * a_;
+    if (is_damped()) set_velocity(1 / h);
     if (const Outcome outcome = solve_stage(now.q, now.t + h / 2, s);
         outcome != Outcome::reached_end) {
       return outcome;
     }
     a_ = (u_ - free_) / s;
+    if (is_damped()) next.dissipated = now.dissipated + h * stage_power(now.q);
     next.q = now.q + u_;
     next.v = 2 / h * u_ - now.v;
     return Outcome::reached_end;
@@ -42,7 +45,11 @@ class EnergyMomentum final : public ImplicitStep {
   void stage_force(const Vec& q, const Vec& u, Vec& f) override {
     x_ = q + u;
     mean_force(q, x_, f);
+    if (!is_damped()) return;
+    stage_power(q);
+    f += friction();
   }
+  double friction_part() const override { return 0.5; }
   void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                        SymmetricMatrix& k) override {
     x_ = q + u / 2;
@@ -66,6 +73,7 @@ Method discrete_gradient() {
           .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient, Need::autonomous},
           .takes = {Option::solve_tolerance, Option::solver},
+          .damped = Damped::by_any,
           .make = create<EnergyMomentum>};
 }
 

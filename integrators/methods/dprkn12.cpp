@@ -123,19 +123,22 @@ std::unique_ptr<Stepper> make_dprkn12(SystemRun& run) {
 }  // namespace
 
 Method dprkn12() {
-  return {.name = "dprkn12",
-          .summary =
-              "adaptive explicit Runge-Kutta-Nystrom of order 12(10), 17 forces a step, "
-              "held to 1/w_max",
-          .source =
-              "Dormand, El-Mikkawy and Prince, IMA J. Numerical Analysis 7 (1987) 423-430, "
-              "RKN12(10)17M",
-          .order = 12,
-          .knob = Knob::rtol,
-          .traits = {Trait::interpolates, Trait::bounds_steps},
-          .needs = {Need::conservative},
-          .nystrom_pair = &dprkn12_pair(),
-          .make = make_dprkn12};
+  return {
+      .name = "dprkn12",
+      .summary =
+          "adaptive explicit Runge-Kutta-Nystrom of order 12(10), 17 forces a step, "
+          "held to 1/w_max",
+      .source =
+          "Dormand, El-Mikkawy and Prince, IMA J. Numerical Analysis 7 (1987) 423-430, "
+          "RKN12(10)17M",
+      .order = 12,
+      .knob = Knob::rtol,
+      .traits = {Trait::interpolates, Trait::bounds_steps},
+      .needs = {Need::conservative},
+      .nystrom_pair = &dprkn12_pair(),
+      .why_not_damped =
+          "Nystrom's order conditions are for forces of positions: with velocities its order is 1",
+      .make = make_dprkn12};
 }
 
 }  // namespace qddot::registered

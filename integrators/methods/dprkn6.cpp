@@ -55,19 +55,22 @@ std::unique_ptr<Stepper> make_dprkn6(SystemRun& run) {
 }  // namespace
 
 Method dprkn6() {
-  return {.name = "dprkn6",
-          .summary =
-              "adaptive explicit Runge-Kutta-Nystrom of order 6(4), five forces a step, "
-              "held to 1/w_max",
-          .source =
-              "Dormand and Prince, Computers & Mathematics with Applications 13 (1987) "
-              "937-949, RKN6(4)6FD",
-          .order = 6,
-          .knob = Knob::rtol,
-          .traits = {Trait::interpolates, Trait::bounds_steps},
-          .needs = {Need::conservative},
-          .nystrom_pair = &dprkn6_pair(),
-          .make = make_dprkn6};
+  return {
+      .name = "dprkn6",
+      .summary =
+          "adaptive explicit Runge-Kutta-Nystrom of order 6(4), five forces a step, "
+          "held to 1/w_max",
+      .source =
+          "Dormand and Prince, Computers & Mathematics with Applications 13 (1987) "
+          "937-949, RKN6(4)6FD",
+      .order = 6,
+      .knob = Knob::rtol,
+      .traits = {Trait::interpolates, Trait::bounds_steps},
+      .needs = {Need::conservative},
+      .nystrom_pair = &dprkn6_pair(),
+      .why_not_damped =
+          "Nystrom's order conditions are for forces of positions: with velocities its order is 1",
+      .make = make_dprkn6};
 }
 
 }  // namespace qddot::registered

@@ -54,19 +54,22 @@ std::unique_ptr<Stepper> make_dprkn8(SystemRun& run) {
 }  // namespace
 
 Method dprkn8() {
-  return {.name = "dprkn8",
-          .summary =
-              "adaptive explicit Runge-Kutta-Nystrom of order 8(6), eight forces a step, "
-              "held to 1/w_max",
-          .source =
-              "Dormand, El-Mikkawy and Prince, IMA J. Numerical Analysis 7 (1987) 423-430, "
-              "RKN8(6)9FM",
-          .order = 8,
-          .knob = Knob::rtol,
-          .traits = {Trait::interpolates, Trait::bounds_steps},
-          .needs = {Need::conservative},
-          .nystrom_pair = &dprkn8_pair(),
-          .make = make_dprkn8};
+  return {
+      .name = "dprkn8",
+      .summary =
+          "adaptive explicit Runge-Kutta-Nystrom of order 8(6), eight forces a step, "
+          "held to 1/w_max",
+      .source =
+          "Dormand, El-Mikkawy and Prince, IMA J. Numerical Analysis 7 (1987) 423-430, "
+          "RKN8(6)9FM",
+      .order = 8,
+      .knob = Knob::rtol,
+      .traits = {Trait::interpolates, Trait::bounds_steps},
+      .needs = {Need::conservative},
+      .nystrom_pair = &dprkn8_pair(),
+      .why_not_damped =
+          "Nystrom's order conditions are for forces of positions: with velocities its order is 1",
+      .make = make_dprkn8};
 }
 
 }  // namespace qddot::registered

@@ -3,13 +3,17 @@
 //   -M^-1/2 K M^-1/2 = U diag(w_k^2) U^T,   y = U^T M^1/2 (q - q_n),   b = U^T M^-1/2 f(q_n)
 //   y_k(h) = y_k'(0) sin(w_k h)/w_k + b_k (1 - cos(w_k h))/w_k^2
 // A mode with w_k = 0 moves by y_k'(0) h + b_k h^2/2, and one with w_k^2 < 0 by hyperbolic
-// functions. So no step size has a step error; what is left is rounding. The modes are found once a
-// run by a dense eigenproblem. It takes n^3 time and n^2 memory for n unknowns, and more than 2000
-// of them are refused.
+// functions. Damping in proportion to M and K leaves the modes apart. With other damping that is
+// the same everywhere, a step is the exponential of its length times the 2n x 2n matrix of q and v
+// (see exponential_motion.hpp). So no step size has a step error; what is left is rounding. The
+// modes are found once a run by a dense eigenproblem. It takes n^3 time and n^2 memory for n
+// unknowns, and more than 2000 of them are refused.
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "qddot/analysis/exponential_motion.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
@@ -19,6 +23,8 @@ namespace {
 
 // The most unknowns: a dense eigenproblem of about ten seconds, and n^2 numbers of memory.
 constexpr Index largest_size = 2000;
+// The same for an exponential of some ten seconds.
+constexpr Index largest_exponential = 400;
 
 class Exact final : public Formula {
  public:
@@ -26,31 +32,58 @@ class Exact final : public Formula {
 
   void begin(const State& state, State& x) {
     x = state;
-    if (system().size() > largest_size) return;
-    motion_ = std::make_shared<LinearMotion>(system());
+    exponential_.reset();
+    is_constant_ = !is_damped() || system().damping()->damping_is_constant();
+    if (system().size() > largest_size || !is_constant_) return;
     ++counts().stiffness_evaluations;
+    has_modes_ = LinearMotion::has_modes(system());
+    if (!has_modes_) return;
+    motion_ = std::make_shared<LinearMotion>(system());
     ++counts().factorizations;
   }
 
   void resume(const Exact& run, const State& x, State& own) {
     own = x;
     motion_ = run.motion_;
+    has_modes_ = run.has_modes_;
+    is_constant_ = run.is_constant_;
   }
 
   Outcome step(const State& now, double h, State& next) {
-    if (!motion_) {
-      set_message(fmt::format("{} unknowns are too many for all modes; at most {} are allowed",
-                              system().size(), largest_size));
+    const Index most = has_modes_ ? largest_size : largest_exponential;
+    if (system().size() > most) {
+      set_message(fmt::format("{} unknowns are too many for {}; at most {} are allowed",
+                              system().size(),
+                              has_modes_ ? "all modes" : "the exponential of their matrix", most));
       return Outcome::solver_failed;
     }
-    motion_->propagate(now, h, next, scratch_);
+    if (!is_constant_) {
+      set_message("dashpots turn with their springs, and this method is for constant C");
+      return Outcome::stiffness_varies;
+    }
     ++counts().force_evaluations;
+    if (has_modes_) {
+      motion_->propagate(now, h, next, scratch_);
+    } else {
+      if (!exponential_ || exponential_->duration() != h) {
+        exponential_.emplace(system(), h);
+        ++counts().factorizations;
+      }
+      exponential_->propagate(now, next);
+    }
+    // The motion is exact, so what its energy has lost is what friction has taken.
+    if (is_damped()) {
+      next.dissipated =
+          now.dissipated + (total_energy(system(), now) - total_energy(system(), next));
+    }
     return Outcome::reached_end;
   }
 
  private:
   std::shared_ptr<const LinearMotion> motion_;
   LinearMotion::Scratch scratch_;
+  std::optional<ExponentialMotion> exponential_;
+  bool has_modes_ = true, is_constant_ = true;
 };
 
 }  // namespace
@@ -63,6 +96,7 @@ Method exact() {
       .order = 0,
       .traits = {Trait::symplectic, Trait::reversible},
       .needs = {Need::conservative, Need::stiffness, Need::constant_stiffness, Need::autonomous},
+      .damped = Damped::by_any,
       .make = create<Exact>};
 }
 

@@ -8,6 +8,8 @@
 // infinite frequency:
 //   generalized_alpha   alpha_m = (2 rho - 1)/(rho + 1),   alpha_f = rho/(rho + 1)
 //   hht                 alpha_m = 0,                       alpha_f = (1 - rho)/(1 + rho)
+// f is taken at the mean of the velocities, too, if it depends on them:
+//   (1 - alpha_f) v_{n+1} + alpha_f v_n
 // A rho below 1/2 is taken as 1/2 by hht. Both methods have order 2 and are A-stable. Each step
 // solves one nonlinear equation, for the mean position at which f is taken.
 #include "qddot/integrators/base/implicit_step.hpp"
@@ -37,12 +39,14 @@ class GeneralizedAlpha : public ImplicitStep {
   void begin(const State& state, State& x) {
     ImplicitStep::begin(state, x);
     acceleration(state, a_);
+    power_ = power();
     last_h_ = 0;
   }
 
   void resume(const GeneralizedAlpha& run, const State& x, State& own) {
     ImplicitStep::begin(x, own);
     a_ = run.a_;
+    power_ = run.power_;
     last_a_ = run.last_a_;
     last_h_ = run.last_h_;
   }
@@ -63,6 +67,11 @@ class GeneralizedAlpha : public ImplicitStep {
     const double s = (1 - alpha_.f) * beta / (1 - alpha_.m) * h * h;
     free_ = (1 - alpha_.f) * (h * now.v + h * h * (0.5 - beta) * a_) - s * alpha_.m * a_;
     u_ = free_ + s * a_;
+    if (is_damped()) {
+      const double part = (1 - alpha_.f) * h, rate = part * gamma / ((1 - alpha_.m) * s);
+      const double of_a = 1 - gamma - gamma * alpha_.m / (1 - alpha_.m);
+      set_velocity(rate, now.v + part * of_a * a_ - rate * free_);
+    }
     if (const Outcome outcome = solve_stage(now.q, now.t + (1 - alpha_.f) * h, s);
         outcome != Outcome::reached_end) {
       return outcome;
@@ -72,12 +81,19 @@ class GeneralizedAlpha : public ImplicitStep {
     next.q = now.q + u_ / (1 - alpha_.f);
     next.v = now.v + h * ((1 - gamma) * last_a_ + gamma * a_);
     last_h_ = h;
+    if (is_damped()) {
+      // The trapezoidal rule, at the ends of steps.
+      const double power = this->power({next.t, next.q, next.v});
+      next.dissipated = now.dissipated + h / 2 * (power_ + power);
+      power_ = power;
+    }
     return Outcome::reached_end;
   }
 
  private:
   const Alphas alpha_;
   Vec a_{system().size()}, last_a_{system().size()};
+  double power_ = 0;   // v'Cv at the start of a step [W]
   double last_h_ = 0;  // 0: no step yet, and a_ is that of the start
 };
 
@@ -103,6 +119,7 @@ Method generalized_alpha() {
           .traits = {Trait::implicit, Trait::remembers_steps},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
+          .damped = Damped::by_any,
           .make = create<ChungHulbert>};
 }
 
@@ -114,6 +131,7 @@ Method hht() {
           .traits = {Trait::implicit, Trait::remembers_steps},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::spectral_radius, Option::solver},
+          .damped = Damped::by_any,
           .make = create<Hht>};
 }
 

@@ -18,12 +18,14 @@ class ImplicitEuler final : public ImplicitStep {
   Outcome step(const State& now, double h, State& next) {
     free_ = h * now.v;
     u_ = free_;
+    if (is_damped()) set_velocity(1 / h);
     if (const Outcome outcome = solve_stage(now.q, next.t, h * h);
         outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
     next.v = u_ / h;
+    if (is_damped()) next.dissipated = now.dissipated + h * stage_power(now.q);
     return Outcome::reached_end;
   }
 };
@@ -34,9 +36,10 @@ Method implicit_euler() {
   return {.name = "implicit_euler",
           .summary = "backward Euler by Newton on the incremental potential; damps at every h",
           .source = "Martin, Thomaszewski, Grinspun, Gross, SIGGRAPH 2011, section 4",
-          .traits = {Trait::implicit, Trait::accepts_massless},
+          .traits = {Trait::implicit, Trait::accepts_massless, Trait::accepts_massless_dashpots},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
+          .damped = Damped::by_any,
           .make = create<ImplicitEuler>};
 }
 

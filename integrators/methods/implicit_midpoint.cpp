@@ -23,11 +23,13 @@ class ImplicitMidpoint final : public ImplicitStep {
     const double s = h * h / 4;
     free_ = h / 2 * now.v;
     u_ = free_ + s * a_;
+    if (is_damped()) set_velocity(2 / h);
     if (const Outcome outcome = solve_stage(now.q, now.t + h / 2, s);
         outcome != Outcome::reached_end) {
       return outcome;
     }
     a_ = (u_ - free_) / s;
+    if (is_damped()) next.dissipated = now.dissipated + h * stage_power(now.q);
     next.q = now.q + 2 * u_;
     next.v = 4 / h * u_ - now.v;
     return Outcome::reached_end;
@@ -47,6 +49,7 @@ Method implicit_midpoint() {
           .traits = {Trait::implicit, Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
+          .damped = Damped::by_any,
           .make = create<ImplicitMidpoint>};
 }
 

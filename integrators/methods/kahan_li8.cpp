@@ -43,6 +43,8 @@ Method kahan_li8() {
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &kahan_li8_splitting(),
+          .damped = Damped::by_air,
+          .why_not_damped = "it drifts back in time, where dashpots add energy",
           .make = create_splitting};
 }
 

@@ -23,6 +23,10 @@
 //   p h,   p h,   (1 - 4 p) h,   p h,   p h,   p = 1/(4 - 4^(1/3))
 // Soft springs disturb it in narrow bands of h, where the five steps together turn a stiff
 // vibration by a multiple of pi. Such a vibration grows slowly.
+//
+// Friction -C v is linear in v, so the midpoint rule for it needs no iteration either:
+//   (A + h/2 C(x)) (v_{n+1} - v_n) = h (f(x) - C(x) v_n)
+// Then every spring is in the matrix. A step takes the energy h v'Cv of the mean velocity v.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -62,7 +66,7 @@ class LinearMidpoint final : public Formula {
  public:
   explicit LinearMidpoint(SystemRun& run)
       : Formula(run),
-        split_(system().split()),
+        split_(is_damped() ? nullptr : system().split()),
         implicit_(split_ ? *split_->stiff_block : system()),
         k_(implicit_.stiffness_pattern()),
         f_(system().size()),
@@ -82,11 +86,12 @@ class LinearMidpoint final : public Formula {
   Outcome step(const State& now, double h, State& next) {
     next.q = now.q;
     next.v = now.v;
+    next.dissipated = now.dissipated;
     double before = 0, t = now.t;
     for (const double g : gamma) {
       t += (before + g) * h / 2;
       next.q += ((before + g) * h / 2) * next.v;
-      force({t, next.q}, f_);
+      force({t, next.q, next.v}, f_);
       if (const Outcome outcome = kick(g * h, t, next); outcome != Outcome::reached_end) {
         return outcome;
       }
@@ -102,7 +107,12 @@ class LinearMidpoint final : public Formula {
     if (!split_) {
       Outcome outcome = factorize(h, {t, next.q});
       if (outcome == Outcome::reached_end) outcome = solve(f_, change_);
-      if (outcome == Outcome::reached_end) next.v += h * change_;
+      if (outcome != Outcome::reached_end) return outcome;
+      if (is_damped()) {
+        mean_ = next.v + h / 2 * change_;
+        next.dissipated += h * power({t, next.q, mean_});
+      }
+      next.v += h * change_;
       return outcome;
     }
     change_ = f_.cwiseQuotient(system().mass());
@@ -125,12 +135,15 @@ class LinearMidpoint final : public Formula {
   // Factorises A at x, the positions of the implicit part. With a constant K this is done for
   // another |h| only.
   Outcome factorize(double h, const At& x) {
-    if (implicit_.stiffness_is_constant() && std::abs(h) == factorized_h_) {
-      return Outcome::reached_end;
-    }
+    const bool is_constant = implicit_.stiffness_is_constant() &&
+                             (!is_damped() || implicit_.damping()->damping_is_constant());
+    // Only C knows the direction of time.
+    const double length = is_damped() ? h : std::abs(h);
+    if (is_constant && length == factorized_h_) return Outcome::reached_end;
     run_.counted().material_stiffness(implicit_, x, k_);
+    if (is_damped()) subtract_damping(implicit_, x, 2 / h, k_);
     if (!k_.coeffs().allFinite()) return Outcome::not_finite;
-    factorized_h_ = std::abs(h);
+    factorized_h_ = length;
     ++counts().factorizations;
     const Stopwatch watch(clock(), &Seconds::factorization);
     return matrix_->factorize_positive(1, h * h / 4, k_) ? Outcome::reached_end
@@ -148,6 +161,7 @@ class LinearMidpoint final : public Formula {
   std::unique_ptr<EffectiveMass> matrix_;  // empty if the implicit part has no unknowns
   SymmetricMatrix k_;
   Vec f_, change_, own_, own_change_;
+  Vec mean_;  // of the velocities before and after a kick
   double factorized_h_ = 0;
 };
 
@@ -164,6 +178,7 @@ Method linear_midpoint() {
           .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
+          .damped = Damped::by_any,
           .make = create<LinearMidpoint<plain>>};
 }
 
@@ -176,6 +191,8 @@ Method linear_midpoint4() {
           .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
+          .damped = Damped::by_air,
+          .why_not_damped = "one of its steps goes back in time, where dashpots add energy",
           .make = create<LinearMidpoint<suzuki>>};
 }
 

@@ -103,6 +103,7 @@ Method local_global_lbfgs() {
           .traits = {Trait::implicit},
           .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
+          .why_not_damped = "its constant matrix has no place for dashpots",
           .make = create<Lbfgs>};
 }
 

@@ -245,6 +245,7 @@ Method multirate_adams() {
           .order = k + 1,
           .traits = SetOf<Trait>{}.with(Trait::remembers_steps, k > 1),
           .needs = {Need::conservative, Need::autonomous, Need::stiffness, Need::split_forces},
+          .why_not_damped = "its polynomials are for forces of positions",
           .make = create<MultirateAdams<k>>};
 }
 

@@ -29,6 +29,9 @@ Method position_verlet() {
           .needs = {Need::conservative},
           .takes = {Option::compensated},
           .splitting = &position_verlet_splitting(),
+          .damped = Damped::by_air,
+          .why_not_damped =
+              "its kick comes before the velocity that dashpots need, which leaves order 1",
           .make = create_splitting};
 }
 

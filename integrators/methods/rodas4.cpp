@@ -47,6 +47,7 @@ Method rodas4() {
           .traits = {Trait::implicit, Trait::interpolates},
           .needs = {Need::conservative, Need::stiffness, Need::autonomous},
           .takes = {Option::solver},
+          .why_not_damped = "its order needs the derivative of friction by positions",
           .make = make};
 }
 

@@ -6,6 +6,8 @@
 // q'' = -w^2 q it is implicit Euler. It has order 1 and takes one force, one factorisation and one
 // solve a step, but one factorisation a run where K is constant.
 //
+// Dashpots and air add h C(q_n) to the matrix.
+//
 // The literature calls symplectic_euler semi-implicit as well; that is another method. Compressed
 // springs may make the matrix indefinite. It is solved with as it stands. A singular matrix ends
 // the run, and conjugate gradients end it at an indefinite one.
@@ -33,6 +35,9 @@ class SemiImplicitEuler final : public Formula {
     if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
       return outcome;
     }
+    if (is_damped()) {
+      next.dissipated = now.dissipated + h * power({next.t, now.q, next.v});
+    }
     next.q = now.q + h * next.v;
     return Outcome::reached_end;
   }
@@ -40,8 +45,11 @@ class SemiImplicitEuler final : public Formula {
  private:
   // Factorises M - h^2 K unless the last factors are of this matrix.
   bool factorize(const At& at, double h) {
-    if (system().stiffness_is_constant() && h == factorized_h_) return true;
+    const bool is_constant = system().stiffness_is_constant() &&
+                             (!is_damped() || system().damping()->damping_is_constant());
+    if (is_constant && h == factorized_h_) return true;
     stiffness(at, k_);
+    if (is_damped()) subtract_damping(system(), at, 1 / h, k_);
     ++counts().factorizations;
     factorized_h_ = h;
     const Stopwatch watch(clock(), &Seconds::factorization);
@@ -72,9 +80,11 @@ Method semi_implicit_euler() {
   return {.name = "semi_implicit_euler",
           .summary = "linearly implicit Euler; one linear solve a step, damps",
           .source = "Baraff and Witkin, Large Steps in Cloth Simulation, SIGGRAPH 1998, eq. 6",
-          .traits = {Trait::implicit, Trait::linearly_implicit, Trait::accepts_massless},
+          .traits = {Trait::implicit, Trait::linearly_implicit, Trait::accepts_massless,
+                     Trait::accepts_massless_dashpots},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
+          .damped = Damped::by_any,
           .make = create<SemiImplicitEuler>};
 }
 

@@ -33,6 +33,7 @@ Method symmetric10() {
           .traits = {Trait::remembers_steps},
           .needs = {Need::conservative},
           .symmetric_formula = &symmetric10_formula(),
+          .why_not_damped = "a spurious root of its formula grows with any dashpot",
           .make = create_symmetric};
 }
 

@@ -35,6 +35,7 @@ Method symmetric6() {
           .traits = {Trait::remembers_steps},
           .needs = {Need::conservative},
           .symmetric_formula = &symmetric6_formula(),
+          .why_not_damped = "a spurious root of its formula grows with any dashpot",
           .make = create_symmetric};
 }
 

@@ -34,6 +34,7 @@ Method symmetric8() {
           .traits = {Trait::remembers_steps},
           .needs = {Need::conservative},
           .symmetric_formula = &symmetric8_formula(),
+          .why_not_damped = "a spurious root of its formula grows with any dashpot",
           .make = create_symmetric};
 }
 

@@ -155,6 +155,7 @@ Method takahashi_imada4() {
           .recurrence_roots = roots,
           .traits = {Trait::remembers_steps},
           .needs = {Need::conservative, Need::autonomous},
+          .why_not_damped = "its change of coordinates is for forces of positions",
           .make = create<TakahashiImada4>};
 }
 

@@ -20,23 +20,31 @@ class Trapezoidal final : public ImplicitStep {
   void begin(const State& state, State& x) {
     ImplicitStep::begin(state, x);
     acceleration(state, a_);
+    power_ = power();
   }
 
   Outcome step(const State& now, double h, State& next) {
     const double s = h * h / 4;
     free_ = h * now.v + s * a_;
     u_ = free_ + s * a_;
+    if (is_damped()) set_velocity(2 / h, -now.v);
     if (const Outcome outcome = solve_stage(now.q, next.t, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
     next.v = 2 / h * u_ - now.v;  // u = h/2 (v_n + v_{n+1})
     a_ = (u_ - free_) / s;
+    if (is_damped()) {
+      const double power = stage_power(now.q);
+      next.dissipated = now.dissipated + h / 2 * (power_ + power);
+      power_ = power;
+    }
     return Outcome::reached_end;
   }
 
  private:
   Vec a_{system().size()};
+  double power_ = 0;  // v'Cv at the start of a step [W]
 };
 
 }  // namespace
@@ -49,6 +57,7 @@ Method trapezoidal() {
           .traits = {Trait::implicit, Trait::reversible},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
+          .damped = Damped::by_any,
           .make = create<Trapezoidal>};
 }
 

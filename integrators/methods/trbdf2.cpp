@@ -20,12 +20,14 @@ class TrBdf2 final : public ImplicitStep {
   void begin(const State& state, State& x) {
     ImplicitStep::begin(state, x);
     acceleration(state, a_);
+    power_ = power();
   }
 
   Outcome step(const State& now, double h, State& next) {
     const double c = g * h / 2, s = c * c;
     free_ = 2 * c * now.v + s * a_;
     u_ = free_ + s * a_;
+    if (is_damped()) set_velocity(1 / c, -now.v);
     if (const Outcome outcome = solve_stage(now.q, now.t + g * h, s);
         outcome != Outcome::reached_end) {
       return outcome;
@@ -33,20 +35,28 @@ class TrBdf2 final : public ImplicitStep {
     ug_ = u_;
     vg_ = u_ / c - now.v;
     a_ = (u_ - free_) / s;
+    double dissipated = 0;  // in the step
+    if (is_damped()) dissipated = c * (power_ + stage_power(now.q));
 
     free_ = b * ug_ + c * (now.v + b * (vg_ - now.v));
     u_ = free_ + s * a_;
+    if (is_damped()) set_velocity(1 / c, -b / c * ug_);
     if (const Outcome outcome = solve_stage(now.q, next.t, s); outcome != Outcome::reached_end) {
       return outcome;
     }
     next.q = now.q + u_;
     next.v = (u_ - b * ug_) / c;
     a_ = (u_ - free_) / s;
+    if (is_damped()) {
+      power_ = stage_power(now.q);
+      next.dissipated = now.dissipated + b * dissipated + c * power_;
+    }
     return Outcome::reached_end;
   }
 
  private:
   Vec a_{system().size()};
+  double power_ = 0;  // v'Cv at the start of a step [W]
   Vec ug_{system().size()}, vg_{system().size()};
 };
 
@@ -60,6 +70,7 @@ Method trbdf2() {
           .traits = {Trait::implicit},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solve_tolerance, Option::solver},
+          .damped = Damped::by_any,
           .make = create<TrBdf2>};
 }
 

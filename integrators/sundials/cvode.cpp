@@ -125,6 +125,7 @@ Method bdf(const char* name, const char* solver, const char* stock_of = "") {
           .takes = SetOf<Option>{Option::max_order, Option::stability_detection}.with(
               Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,
+          .damped = Damped::by_any,
           .make = create_steps<Bdf<make_matrix>>};
 }
 

@@ -61,6 +61,7 @@ Method dirk(const std::string& name, const char* solver, const std::string& stoc
           .needs = {Need::conservative, Need::stiffness},
           .takes = SetOf<Option>{}.with(Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,
+          .damped = Damped::by_any,
           .make = create_steps<Dirk<order, make_matrix>>};
 }
 template <int order>

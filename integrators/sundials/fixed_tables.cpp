@@ -60,6 +60,7 @@ Method fixed(const char* name, int order, const char* what, const char* source) 
           .traits = {Trait::implicit},
           .needs = {Need::conservative, Need::stiffness},
           .takes = {Option::solver},
+          .damped = Damped::by_any,
           .make = create_steps<FixedTable<make_table>>};
 }
 

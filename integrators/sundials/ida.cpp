@@ -99,6 +99,7 @@ class Ida final : public Library {
     for (Index i = 0; i < system().size(); ++i) {
       rate.v[i] = system().mass()[i] > 0 ? rate.v[i] / system().mass()[i] : 0;
     }
+    if (has_dissipated(y())) dissipated(rate_.get()) = power();
   }
 
   int take_step(double t_stop, double& t) override {
@@ -261,6 +262,7 @@ class Ida final : public Library {
       out.q = change.q - at.v;
       if (self.massless_) self.set_massless(out.q, -at.v);
       out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), t, at);
+      if (has_dissipated(y)) dissipated(residual) = dissipated(rate) - self.power();
       return std::isfinite(out.v.sum());
     });
   }
@@ -269,7 +271,8 @@ class Ida final : public Library {
                       N_Vector, N_Vector, N_Vector) {
     auto& self = *static_cast<Ida*>(static_cast<Library*>(user));
     return self.guarded([&] {
-      self.matrix().set_implicit_form(c, self.stiffness_at(t, Halves(y)));
+      const SymmetricMatrix& k = self.stiffness_at(t, Halves(y));
+      self.matrix().set_implicit_form(c, k, self.damping_matrix());
       return true;
     });
   }
@@ -335,6 +338,7 @@ Method ida(const char* name, const char* solver, const char* stock_of = "") {
           .takes =
               SetOf<Option>{Option::max_order}.with(Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,
+          .damped = Damped::by_any,
           .make = create_steps<Ida<make_matrix>>};
 }
 

@@ -70,6 +70,7 @@ Method imex() {
           .traits = {Trait::implicit},
           .needs = {Need::conservative, Need::stiffness, Need::split_forces},
           .takes = {Option::solver},
+          .why_not_damped = "its explicit half has no place for dashpots",
           .make = create_steps<Imex<order>>};
 }
 

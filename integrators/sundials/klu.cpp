@@ -18,24 +18,36 @@ class Klu final : public NewtonMatrix {
       : NewtonMatrix(context),
         mass_(system.mass()),
         pattern_(system),
-        vector_(make_stock_vector(system.size(), context)),
-        entries_(check(SUNSparseMatrix(2 * system.size(), 2 * system.size(),
-                                       std::ssize(pattern_.rows()), CSC_MAT, context))),
+        vector_(make_stock_vector(stacked_size(system), context)),
+        entries_(check(SUNSparseMatrix(stacked_size(system), stacked_size(system),
+                                       std::ssize(pattern_.rows()) + (system.damping() ? 1 : 0),
+                                       CSC_MAT, context))),
         klu_(check(SUNLinSol_KLU(vector_.get(), entries_.get(), context))) {
     std::ranges::copy(pattern_.column_starts(), SM_INDEXPTRS_S(entries_.get()));
     std::ranges::copy(pattern_.rows(), SM_INDEXVALS_S(entries_.get()));
+    if (!system.damping()) return;
+    // The energy that friction takes has an entry on the diagonal.
+    const auto count = std::ssize(pattern_.rows());
+    SM_INDEXVALS_S(entries_.get())[count] = 2 * system.size();
+    SM_INDEXPTRS_S(entries_.get())[2 * system.size() + 1] = count + 1;
   }
 
  private:
-  void set_explicit_form(double gamma, const SymmetricMatrix& k) override {
+  void set_explicit_form(double gamma, const SymmetricMatrix& k,
+                         const SymmetricMatrix* damping) override {
     s_ = -gamma * mass_.cwiseInverse();
     e_.setOnes();
-    pattern_.fill(1, -gamma, s_, k, e_, SM_DATA_S(entries_.get()));
+    fill(1, -gamma, k, damping);
   }
-  void set_implicit_form(double c, const SymmetricMatrix& k) override {
+  void fill(double alpha, double beta, const SymmetricMatrix& k, const SymmetricMatrix* damping) {
+    pattern_.fill(alpha, beta, s_, k, e_, SM_DATA_S(entries_.get()), damping);
+    if (damping) SM_DATA_S(entries_.get())[pattern_.rows().size()] = alpha;
+  }
+  void set_implicit_form(double c, const SymmetricMatrix& k,
+                         const SymmetricMatrix* damping) override {
     s_.setConstant(-1);
     e_ = c * mass_;
-    pattern_.fill(c, -1, s_, k, e_, SM_DATA_S(entries_.get()));
+    fill(c, -1, k, damping);
     for (Index i = 0; i < mass_.size(); ++i) {
       // The diagonal entry is the first of its column.
       if (mass_[i] == 0) SM_DATA_S(entries_.get())[pattern_.column_starts()[i]] = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -20,8 +21,8 @@ Library::Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_
     : Formula(run),
       implicit_part_(implicit_part),
       context_(make_context()),
-      y_(make_matrix == make_klu ? make_stock_vector(system().size(), context())
-                                 : make_vector(system().size(), context())),
+      y_(make_matrix == make_klu ? make_stock_vector(stacked_size(system()), context())
+                                 : make_vector(stacked_size(system()), context())),
       atol_(clone(y())),
       per_mass_(system().mass().cwiseInverse()),
       f_(system().size()) {
@@ -29,8 +30,11 @@ Library::Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_
   const bool is_given = options().atol > 0;
   absolute.q.setConstant(is_given ? options().atol : rtol() * options().length);
   absolute.v.setConstant(is_given ? options().atol : rtol() * options().speed);
+  // The energy that friction takes follows the motion, and decides no step.
+  if (has_dissipated(atol())) dissipated(atol()) = std::numeric_limits<double>::max();
   if (!make_matrix) return;
   k_ = implicit_part.stiffness_pattern();
+  if (implicit_part.damping()) c_ = k_;
   matrix_ = make_matrix(implicit_part, context(), options().solver);
   matrix_->time_into(clock());
 }
@@ -41,6 +45,7 @@ void Library::load(const State& state) {
   Halves halves(y());
   halves.q = state.q;
   halves.v = state.v;
+  if (has_dissipated(y())) dissipated(y()) = state.dissipated;
   if (has_matrix()) matrix().begin_run();
 }
 
@@ -80,11 +85,13 @@ bool Library::set_rate(const System& part, double t, N_Vector y, N_Vector rate) 
   Halves change(rate);
   change.q = at.v;
   change.v = per_mass_.cwiseProduct(force_at(part, t, at));
+  if (has_dissipated(rate)) dissipated(rate) = power();
   return std::isfinite(change.v.sum());
 }
 
 const SymmetricMatrix& Library::stiffness_at(double t, const Halves& y) {
   stiffness(implicit_part_, {t, y.q, y.v}, k_);
+  if (c_.size() > 0) implicit_part_.damping()->damping_matrix({t, y.q, y.v}, c_);
   return k_;
 }
 
@@ -97,7 +104,7 @@ int Library::set_matrix(double t, N_Vector y, bool jok, int* jcur, double gamma)
   return guarded([&] {
     if (!jok) stiffness_at(t, Halves(y));
     *jcur = !jok;
-    matrix().set_explicit_form(gamma, k_);
+    matrix().set_explicit_form(gamma, k_, damping_matrix());
     return true;
   });
 }
@@ -126,6 +133,7 @@ Outcome Library::take(const State& from, double t_stop, State& next) {
   const Halves halves(y());
   next.q = halves.q;
   next.v = halves.v;
+  next.dissipated = has_dissipated(y()) ? dissipated(y()) : from.dissipated;
   next.t = t;
   return Outcome::reached_end;
 }

@@ -97,8 +97,10 @@ class Library : public Formula {
   const Vec& force_at(const System& part, double t, const Halves& y);
   // Sets y' = (v, M^-1 f); false if that is not finite.
   bool set_rate(const System& part, double t, N_Vector y, N_Vector rate);
-  // K of the implicit part at t and y, kept until the next; counted.
+  // K of the implicit part at t and y, with its C, kept until the next; counted.
   const SymmetricMatrix& stiffness_at(double t, const Halves& y);
+  // That C; nullptr if the part has no Damping.
+  const SymmetricMatrix* damping_matrix() const { return c_.size() > 0 ? &c_ : nullptr; }
 
   // Callbacks of ARKODE and CVODE, whose user data is the Library. They compute y' of the whole
   // system, and Newton's matrix I - gamma J of the implicit part, with a new K unless `jok`.
@@ -128,7 +130,7 @@ class Library : public Formula {
   std::unique_ptr<NewtonMatrix> matrix_;
   Vec per_mass_;  // 1/m
   Vec f_;
-  SymmetricMatrix k_;
+  SymmetricMatrix k_, c_;
   OwnCounts collected_;
   bool has_begun_ = false;
   std::exception_ptr parked_;

@@ -142,6 +142,7 @@ Method mri() {
       .order = order,
       .family = Family::sundials,
       .needs = {Need::conservative, Need::stiffness, Need::split_forces},
+      .why_not_damped = "its fast half has no place for dashpots",
       .make = create_steps<Mri<order>>};
 }
 

@@ -10,9 +10,9 @@
 namespace qddot::sundials {
 
 // The matrix of SUNDIALS' Newton iterations on y = (q, v), and its solver. SUNDIALS decides when it
-// is set up anew and from which K. SUNDIALS itself has a SUNMatrix without entries and a
-// SUNLinearSolver that refers to this. K is borrowed and must not change between set_... and the
-// last solve with its factors, which may compute a residual.
+// is set up anew and from which K and C. SUNDIALS itself has a SUNMatrix without entries and a
+// SUNLinearSolver that refers to this. K and C are borrowed and must not change between set_... and
+// the last solve with its factors, which may compute a residual.
 class NewtonMatrix {
  public:
   explicit NewtonMatrix(SUNContext context);
@@ -20,11 +20,15 @@ class NewtonMatrix {
   NewtonMatrix(const NewtonMatrix&) = delete;
   NewtonMatrix& operator=(const NewtonMatrix&) = delete;
 
-  // I - gamma J of y' = (v, M^-1 f(q)), J = [[0, I], [M^-1 K, 0]].
-  virtual void set_explicit_form(double gamma, const SymmetricMatrix& k) = 0;
-  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M]] of F = (q' - v, M v' - f(q)). A massless unknown has
+  // I - gamma J of y' = (v, M^-1 f), J = [[0, I], [M^-1 K, -M^-1 C]]. `damping` is C, or nullptr
+  // for none. The derivatives of the energy that friction takes are left out: nothing depends on
+  // it.
+  virtual void set_explicit_form(double gamma, const SymmetricMatrix& k,
+                                 const SymmetricMatrix* damping = nullptr) = 0;
+  // c dF/dy' + dF/dy = [[c I, -I], [-K, c M + C]] of F = (q' - v, M v' - f). A massless unknown has
   // -v in the first half of F, so its c is zero there.
-  virtual void set_implicit_form(double c, const SymmetricMatrix& k) = 0;
+  virtual void set_implicit_form(double c, const SymmetricMatrix& k,
+                                 const SymmetricMatrix* damping = nullptr) = 0;
 
   SUNMatrix matrix() const { return matrix_.get(); }
   SUNLinearSolver solver() const { return solver_.get(); }

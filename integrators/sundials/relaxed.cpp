@@ -266,6 +266,7 @@ Method relaxed() {
           .traits = {Trait::interpolates, Trait::bounds_steps},
           .needs = {Need::potential, Need::conservative, Need::autonomous},
           .needs_sundials = 70100,
+          .why_not_damped = "it keeps the energy, which damping takes",
           .make = make_relaxed<which>};
 }
 

@@ -100,6 +100,7 @@ Method sprk() {
           .traits = SetOf<Trait>{Trait::symplectic}.with(Trait::reversible, table.is_symmetric),
           .needs = {Need::conservative, Need::autonomous},
           .needs_sundials = 70100,
+          .why_not_damped = "its kicks are for forces of positions",
           .make = make_sprk<which>};
 }
 

@@ -7,6 +7,10 @@
 // but the first row of an unknown without mass is -b = r. No product with K is needed, so the
 // factors may belong to another gamma or an older K than the step at hand. Newton's iteration then
 // takes a few more rounds.
+//
+// With damping, b + gamma M^-1 C b - gamma M^-1 K a = s gives
+//   (M + gamma C - gamma^2 K) a = M (r + gamma s) + gamma C r,
+// and c M b + C b - K a = s the right side gamma (M r + gamma s) + gamma^2 C r.
 #include "integrators/sundials/newton_matrix.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 
@@ -23,18 +27,28 @@ class Structured final : public NewtonMatrix {
       : NewtonMatrix(context), mass_(system.mass()), factors_(system, solver), b_(system.size()) {}
 
  private:
-  void set_explicit_form(double gamma, const SymmetricMatrix& k) override {
-    gamma_ = gamma;
+  void set_explicit_form(double gamma, const SymmetricMatrix& k,
+                         const SymmetricMatrix* damping) override {
     is_implicit_ = false;
-    k_ = &k;
+    set(gamma, k, damping);
   }
-  void set_implicit_form(double c, const SymmetricMatrix& k) override {
-    gamma_ = 1 / c;
+  void set_implicit_form(double c, const SymmetricMatrix& k,
+                         const SymmetricMatrix* damping) override {
     is_implicit_ = true;
+    set(1 / c, k, damping);
+  }
+  void set(double gamma, const SymmetricMatrix& k, const SymmetricMatrix* damping) {
+    gamma_ = gamma;
     k_ = &k;
+    damping_ = damping;
   }
 
   int factorize() override {
+    if (damping_) {
+      damped_ = *k_;
+      damped_.coeffs() -= damping_->coeffs() / gamma_;
+      k_ = &damped_;
+    }
     definiteness_ = factors_.factorize(1, gamma_ * gamma_, *k_);
     if (definiteness_ == EffectiveMass::Definiteness::singular) return 1;
     if (definiteness_ == EffectiveMass::Definiteness::indefinite) count_indefinite();
@@ -49,6 +63,10 @@ class Structured final : public NewtonMatrix {
     } else {
       b_ = mass_.cwiseProduct(rs.q + gamma_ * rs.v);
     }
+    if (damping_) {
+      scaled_ = (is_implicit_ ? gamma_ * gamma_ : gamma_) * rs.q;
+      b_.noalias() += damping_->selfadjointView<Eigen::Lower>() * scaled_;
+    }
     if (factors_.solve(b_, a_) != SolveOutcome::found) return 1;
     if (definiteness_ == EffectiveMass::Definiteness::indefinite && !is_solved()) return 1;
     if (is_implicit_) {
@@ -57,10 +75,12 @@ class Structured final : public NewtonMatrix {
       ab.v = (a_ - rs.q) / gamma_;
     }
     ab.q = a_;
+    if (has_dissipated(x)) dissipated(x) = (is_implicit_ ? gamma_ : 1) * dissipated(right);
     return 0;
   }
 
-  // Whether (M - gamma^2 K) a = b to the digits that are needed, if need be after one refinement.
+  // Whether (M - gamma^2 K) a = b, with K as it was factorised, to the digits that are needed, if
+  // need be after one refinement.
   bool is_solved() {
     for (int refinements = 0;; ++refinements) {
       residual_ = b_ - mass_.cwiseProduct(a_);
@@ -76,7 +96,8 @@ class Structured final : public NewtonMatrix {
   const Vec& mass_;
   EffectiveMass factors_;
   EffectiveMass::Definiteness definiteness_ = EffectiveMass::Definiteness::singular;
-  const SymmetricMatrix* k_ = nullptr;
+  const SymmetricMatrix *k_ = nullptr, *damping_ = nullptr;
+  SymmetricMatrix damped_;  // K - C/gamma
   double gamma_ = 0;
   bool is_implicit_ = false;
   Vec b_, a_, scaled_, residual_, correction_;

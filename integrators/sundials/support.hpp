@@ -10,7 +10,7 @@
 #include <sundials/sundials_nonlinearsolver.h>
 
 #include "integrators/sundials/versions.hpp"
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot::sundials {
 
@@ -47,7 +47,8 @@ using Matrix = std::unique_ptr<_generic_SUNMatrix, FreeBy<SUNMatDestroy>>;
 using LinearSolver = std::unique_ptr<_generic_SUNLinearSolver, FreeBy<SUNLinSolFree>>;
 using NonlinearSolver = std::unique_ptr<_generic_SUNNonlinearSolver, FreeBy<SUNNonlinSolFree>>;
 
-// The two halves of a stacked vector y = (q, v) of length 2n.
+// The two halves of a stacked vector y = (q, v) of length 2n. If the system has Damping, y has one
+// more entry, the energy W [J] that friction has taken, W' = v'Cv.
 struct Halves {
   explicit Halves(N_Vector y)
       : n(N_VGetLength(y) / 2), q(N_VGetArrayPointer(y), n), v(N_VGetArrayPointer(y) + n, n) {}
@@ -55,11 +56,20 @@ struct Halves {
   Eigen::Map<Vec> q, v;
 };
 
-// A zero vector of length 2n for y = (q, v): SUNDIALS' own serial one.
-Vector make_stock_vector(Index n, SUNContext context);
+// The entry W of such a vector, and whether it has one.
+inline bool has_dissipated(N_Vector y) { return N_VGetLength(y) % 2 == 1; }
+inline double& dissipated(N_Vector y) { return N_VGetArrayPointer(y)[N_VGetLength(y) - 1]; }
+
+// The length of y for the system.
+inline Index stacked_size(const System& system) {
+  return 2 * system.size() + (system.damping() ? 1 : 0);
+}
+
+// A zero vector of that length for y: SUNDIALS' own serial one.
+Vector make_stock_vector(Index length, SUNContext context);
 // The same with the main operations of a step compiled for this processor. Sums of several vectors
 // are made in one pass, and the weighted norm adds in several lanes. Its clones are alike.
-Vector make_vector(Index n, SUNContext context);
+Vector make_vector(Index length, SUNContext context);
 // Another zero vector of the same kind.
 Vector clone(N_Vector y);
 

@@ -53,14 +53,14 @@ int linear_sum_array(int count, double a, N_Vector* x, double b, N_Vector* y, N_
 
 }  // namespace
 
-Vector make_stock_vector(Index n, SUNContext context) {
-  Vector y(check(N_VNew_Serial(2 * n, context)));
+Vector make_stock_vector(Index length, SUNContext context) {
+  Vector y(check(N_VNew_Serial(length, context)));
   N_VConst(0, y.get());
   return y;
 }
 
-Vector make_vector(Index n, SUNContext context) {
-  Vector y = make_stock_vector(n, context);
+Vector make_vector(Index length, SUNContext context) {
+  Vector y = make_stock_vector(length, context);
   auto& ops = *y->ops;
   ops.nvlinearsum = linear_sum;
   ops.nvscale = scale;

@@ -22,7 +22,7 @@ using Make = std::unique_ptr<NewtonMatrix> (*)(const System&, SUNContext, qddot:
 class Solver {
  public:
   Solver(Make make, const System& system)
-      : x_(make_stock_vector(system.size(), context_.get())),
+      : x_(make_stock_vector(2 * system.size(), context_.get())),
         b_(clone(x_.get())),
         matrix_(make(system, context_.get(), qddot::Solver::multifrontal)) {}
 

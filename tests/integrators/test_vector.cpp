@@ -23,7 +23,7 @@ struct Vectors {
   Vectors(Vector (*make)(Index, SUNContext), Index n, int count) {
     std::mt19937 random(static_cast<unsigned>(n));
     std::uniform_real_distribution<double> number(-1, 1), exponent(-3, 3);
-    const Vector first = make(n, context.get());
+    const Vector first = make(2 * n, context.get());
     for (int i = 0; i < count; ++i) {
       own.push_back(clone(first.get()));
       all.push_back(own.back().get());
@@ -79,8 +79,8 @@ double factors[count] = {1.5, -0.25, 1 / 3., 1, -1, 0, 1.9, 1e-3};
 
 BOOST_AUTO_TEST_CASE(our_vectors_have_our_operations_and_so_have_their_clones) {
   const Context context = make_context();
-  const Vector ours = make_vector(4, context.get()), copy = clone(ours.get());
-  const Vector stock = make_stock_vector(4, context.get());
+  const Vector ours = make_vector(8, context.get()), copy = clone(ours.get());
+  const Vector stock = make_stock_vector(8, context.get());
   BOOST_TEST(N_VGetLength(ours.get()) == 8);
   BOOST_TEST(N_VGetLength(stock.get()) == 8);
   for (const Vector* zero : {&ours, &copy, &stock}) {

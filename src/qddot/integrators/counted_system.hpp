@@ -9,12 +9,16 @@ namespace qddot {
 // Evaluates the functions of a system for a run. It counts every evaluation and, if the run is
 // timed, takes its time. Functions with a `part` evaluate a system with a part of the forces (see
 // Split) and count it likewise. Borrows the system, which must outlive it.
+//
+// The force of a system with Damping, at velocities, is found in its two parts, so that a method
+// can book the energy that friction takes at the places where the method evaluates forces.
 class CountedSystem {
  public:
   CountedSystem(const System& system, bool is_timed)
       : system_(system),
         split_stiffness_(system.split_stiffness()),
         discrete_gradient_(system.discrete_gradient()),
+        damping_(system.damping()),
         clock_(is_timed ? &seconds : nullptr) {}
   CountedSystem(const CountedSystem&) = delete;
   CountedSystem& operator=(const CountedSystem&) = delete;
@@ -26,7 +30,32 @@ class CountedSystem {
   void force(const System& part, const At& at, MutableVec f) {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
-    part.force(at, f);
+    if (!damping_ || at.v.size() == 0) return part.force(at, f);
+    part.force({at.t, at.q}, f);
+    if (const Damping* damping = part.damping()) {
+      set_friction(*damping, at);
+      f += friction_;
+    } else {
+      friction_.setZero(f.size());
+      power_ = 0;
+    }
+  }
+  // f_d [N] of the last force at velocities v, and the power v'Cv [W] that it took; zero if the
+  // system has no Damping.
+  const Vec& friction() const { return friction_; }
+  double power() const { return power_; }
+  // v'Cv [W] of a system with Damping; friction() is then that of this place.
+  double power(const At& at) {
+    const Stopwatch watch(clock_, &Seconds::force);
+    set_friction(*damping_, at);
+    return power_;
+  }
+  // Subtracts rate C [N/m] of a part with Damping from `k`, a K of its pattern; rate in 1/s.
+  void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {
+    const Stopwatch watch(clock_, &Seconds::stiffness);
+    if (c_.nonZeros() != k.nonZeros()) c_ = k;
+    part.damping()->damping_matrix(at, c_);
+    k.coeffs() -= rate * c_.coeffs();
   }
   // The same with work beside it (see System::force_beside). The time of that work is not a
   // force's, so a timed run does it before and after.
@@ -76,11 +105,21 @@ class CountedSystem {
   Seconds seconds;
 
  private:
+  void set_friction(const Damping& damping, const At& at) {
+    friction_.resize(at.q.size());
+    damping.friction(at, friction_);
+    power_ = -friction_.dot(at.v);
+  }
+
   const System& system_;
   // Capabilities of the system; nullptr for a missing one.
   const SplitStiffness* split_stiffness_;
   const DiscreteGradient* discrete_gradient_;
+  const Damping* damping_;
   Seconds* clock_;
+  Vec friction_;
+  double power_ = 0;
+  SymmetricMatrix c_;
 };
 
 }  // namespace qddot

@@ -48,10 +48,10 @@ void EnergyGrowth::start(const State& state) {
   if (!is_conserved_) return;
   q_ = state.q;
   const double kinetic = system_.kinetic(state.v);
-  fastest_ = {kinetic, state.q, state.v};
-  farthest_ = {0, state.q, state.v};
+  fastest_ = {kinetic, state.dissipated, state.q, state.v};
+  farthest_ = {0, state.dissipated, state.q, state.v};
   lowest_ = system_.potential(state.q);
-  start_ = most_ = kinetic + lowest_;
+  start_ = most_ = kinetic + lowest_ + state.dissipated;
 }
 
 void EnergyGrowth::look_sooner(double squared_speed) {
@@ -79,19 +79,21 @@ void EnergyGrowth::look(const State& state, double work) {
   propose(fastest_, system_.kinetic(state.v), state);
   propose(farthest_, (state.q - q_).squaredNorm(), state);
   if (!is_dear && work < next_energy_) return;
-  see(state.q, state.v);
+  see(state.q, state.v, state.dissipated);
   next_energy_ = work + drawn() * work_an_energy;
 }
 
 void EnergyGrowth::propose(Candidate& candidate, double size, const State& state) {
   if (!(size > grown * candidate.size)) return;
   candidate.size = size;
+  candidate.dissipated = state.dissipated;
   candidate.q = state.q;
   candidate.v = state.v;
 }
 
-double EnergyGrowth::see(const Vec& q, const Vec& v) {
-  const double potential = system_.potential(q), energy = system_.kinetic(v) + potential;
+double EnergyGrowth::see(const Vec& q, const Vec& v, double dissipated) {
+  const double potential = system_.potential(q);
+  const double energy = system_.kinetic(v) + potential + dissipated;
   most_ = std::max(most_, std::isfinite(energy) ? energy : largest);
   lowest_ = std::min(lowest_, potential);
   return energy;
@@ -114,9 +116,9 @@ double EnergyGrowth::rounding() {
 
 EnergyChange EnergyGrowth::change(const State& state) {
   if (!is_conserved_) return {};
-  see(fastest_.q, fastest_.v);
-  see(farthest_.q, farthest_.v);
-  const double lost = start_ - see(state.q, state.v), gained = most_ - start_;
+  see(fastest_.q, fastest_.v, fastest_.dissipated);
+  see(farthest_.q, farthest_.v, farthest_.dissipated);
+  const double lost = start_ - see(state.q, state.v, state.dissipated), gained = most_ - start_;
   EnergyChange change{.lost = std::max(0.0, lost), .own = start_ - lowest_};
   const bool is_own = gained <= change.own;
   if (is_own && change.own > 0) change.growth += gained / change.own;

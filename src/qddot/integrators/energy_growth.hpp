@@ -9,7 +9,8 @@ namespace qddot {
 // The energy that a run gained on its way and lost by its end, beside the energy that its motion
 // can turn into speed, D = the largest E(0) - V(q) seen. An exact motion has the first values of
 // all, also if it begins at rest and falls. So has a system without V, or one that changes its
-// energy.
+// energy. What damping has taken (State::dissipated) counts as energy: only the method's own gain
+// or loss is left.
 struct EnergyChange {
   double growth = 1;  // 1 + (E_max - E(0)) / D, a lower bound
   double lost = 0;    // E(0) - E at the end [J], unless rounding may have made it
@@ -36,8 +37,8 @@ class EnergyGrowth {
   // Borrows the system, which must outlive it.
   explicit EnergyGrowth(const System& system)
       : system_(system),
-        is_conserved_(system.has_potential() && system.is_conservative() &&
-                      system.is_autonomous()) {}
+        is_conserved_(system.has_potential() && system.is_autonomous() &&
+                      (system.is_conservative() || system.damping())) {}
 
   // Begins a new run at `state`.
   void start(const State& state);
@@ -56,12 +57,12 @@ class EnergyGrowth {
 
  private:
   struct Candidate {  // a state whose E is not yet computed, and what is large there
-    double size = 0;
+    double size = 0, dissipated = 0;
     Vec q, v;
   };
   void look_sooner(double squared_speed);
   void propose(Candidate& candidate, double size, const State& state);
-  double see(const Vec& q, const Vec& v);  // returns E
+  double see(const Vec& q, const Vec& v, double dissipated);  // returns E
   double rounding();
   double drawn();
 

@@ -116,7 +116,22 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
     return Outcome::not_finite;
   }
   if (system_.has_massless() && !method_.is(Trait::accepts_massless)) return Outcome::singular_mass;
-  if (const auto why = misfit(method_, system_)) return *why;
+  if (system_.has_massless() && system_.damping() && system_.damping()->has_dashpots() &&
+      !method_.is(Trait::accepts_massless_dashpots)) {
+    message_ =
+        "a massless node beside a dashpot has a velocity of first order: give it a mass, or take "
+        "implicit_euler, semi_implicit_euler or bdf2";
+    return Outcome::singular_mass;
+  }
+  if (const auto why = misfit(method_, system_)) {
+    if (*why == Outcome::refuses_damping && *method_.why_not_damped) {
+      message_ = fmt::format(
+          "{} refuses this damping, since {}: take verlet, symmetric4, rk4 or an "
+          "implicit method",
+          method_.name, method_.why_not_damped);
+    }
+    return *why;
+  }
   if (const double whole = t_end - state.t; whole > 0 && !(whole * whole > shortest_squared)) {
     message_ = fmt::format(
         "the {:g} s to run are too short for their square to be a number: ask for a later end",
@@ -132,6 +147,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
   };
   if (moves) {
     has_begun_ = true;
+    dissipated_ = state.dissipated;
     for (Part& part : parts_) {
       part.run->clear(t_end, stop, is_whole() ? observer.step : nullptr);
       part.growth = 1;
@@ -216,10 +232,12 @@ EnergyChange Integrator::energy_change(const State& state) {
 }
 
 void Integrator::gather(State& state) const {
+  state.dissipated = dissipated_;
   for (const Part& part : parts_) {
     const Index n = part.state.q.size();
     state.q.segment(part.first, n) = part.state.q;
     state.v.segment(part.first, n) = part.state.v;
+    state.dissipated += part.state.dissipated;
   }
   state.t = parts_.front().state.t;
 }

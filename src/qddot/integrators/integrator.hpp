@@ -93,6 +93,7 @@ class Integrator {
   const System& system_;
   std::vector<Part> parts_;  // none if nothing can be run
   bool has_begun_ = false;
+  double dissipated_ = 0;  // by the start of the run [J]
   std::string message_;
   std::int64_t failed_step_ = 0;
 };

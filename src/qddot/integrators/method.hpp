@@ -10,6 +10,7 @@
 
 #include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/set_of.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
@@ -32,18 +33,23 @@ constexpr const char* knob_name(Knob knob) {
   return knob == Knob::step_size ? "step_size" : "rtol";
 }
 
+// The damping with which a method keeps its order and stays stable (capability Damping): none, air
+// without dashpots, or any. Methods of forces that depend on velocities take any.
+enum class Damped { none, by_air, by_any };
+
 // Properties of a method.
 enum class Trait {
   implicit,           // solves equations in each step
   linearly_implicit,  // one solve with M - h^2 K(q_n) a step, whatever its signs: a step may go
                       // anywhere if compressed springs make it singular
   symplectic,
-  cancels_torques,   // keeps angular momentum without being symplectic
-  accepts_massless,  // runs systems with nodes of no mass
-  interpolates,      // interpolates between its steps for an Observer
-  bounds_steps,      // holds its steps to 1/w_max if the system has K
-  reversible,        // fixed steps from the end with v turned round lead back to the start
-  remembers_steps,   // a fixed step depends on earlier ones, not on q and v at its start alone
+  cancels_torques,            // keeps angular momentum without being symplectic
+  accepts_massless,           // runs systems with nodes of no mass,
+  accepts_massless_dashpots,  // and where such nodes are on dashpots
+  interpolates,               // interpolates between its steps for an Observer
+  bounds_steps,               // holds its steps to 1/w_max if the system has K
+  reversible,                 // fixed steps from the end with v turned round lead back to the start
+  remembers_steps,  // a fixed step depends on earlier ones, not on q and v at its start alone
 };
 
 // Properties of a system, beside its forces, that a method needs.
@@ -87,12 +93,19 @@ struct Method {
   const SymmetricFormula* symmetric_formula = nullptr;  // base/symmetric_formula.hpp
   // The oldest SUNDIALS that has the method, 70100 for 7.1; 0 for all that qddot builds with.
   int needs_sundials = 0;
+  // The damping that a method of conservative forces takes.
+  Damped damped = Damped::none;
+  // The reason for which it takes no damping, or no dashpots: "its kicks ...". Empty if it takes
+  // any.
+  const char* why_not_damped = "";
   // nullptr if this build's SUNDIALS is older.
   MakeStepper make = nullptr;
 
   bool is(Trait trait) const { return traits.has(trait); }
   bool asks(Need need) const { return needs.has(need); }
   bool listens_to(Option option) const { return takes.has(option); }
+  // The damping that it takes.
+  Damped takes_damping() const { return asks(Need::conservative) ? damped : Damped::by_any; }
   // Whether the method changes its order in a run.
   bool varies_order() const { return listens_to(Option::max_order); }
 };
@@ -121,8 +134,14 @@ inline std::optional<Outcome> misfit(const Method& method, const System& system)
   if (method.asks(Need::discrete_gradient) && system.size() > 0 && !system.discrete_gradient())
     return Outcome::no_discrete_gradient;
   if (method.asks(Need::potential) && !system.has_potential()) return Outcome::no_potential;
-  if (method.asks(Need::conservative) && !system.is_conservative())
-    return Outcome::not_conservative;
+  if (!system.is_conservative()) {
+    const Damping* damping = system.damping();
+    if (!damping && method.asks(Need::conservative)) return Outcome::not_conservative;
+    const Damped takes = method.takes_damping();
+    if (damping && takes != Damped::by_any && (damping->has_dashpots() || takes == Damped::none)) {
+      return Outcome::refuses_damping;
+    }
+  }
   if (method.asks(Need::autonomous) && !system.is_autonomous()) return Outcome::not_autonomous;
   return {};
 }

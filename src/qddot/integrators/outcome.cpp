@@ -53,6 +53,9 @@ constexpr OutcomeWords outcomes[] = {
     {"not_conservative",
      "the forces depend on velocities, and this method is for forces of positions alone: take one "
      "for f(t, q, v), such as rk4"},
+    {"refuses_damping",
+     "the method would lose its order or its stability with this damping: take verlet, symmetric4, "
+     "rk4 or an implicit method"},
     {"not_autonomous",
      "the forces depend on time, and this method is for forces that stay the same: take one for "
      "f(t, q), such as rk4"},

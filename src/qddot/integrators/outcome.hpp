@@ -24,6 +24,7 @@ enum class Outcome {
   no_discrete_gradient,  // a method that needs one, and a system without one
   no_potential,          // a method that keeps the energy, and a system without V
   not_conservative,      // a method for forces of positions alone, and a system whose f sees v
+  refuses_damping,       // a method that would lose its order with the system's Damping
   not_autonomous,        // a method for forces that stay the same, and a system whose f sees t
 };
 

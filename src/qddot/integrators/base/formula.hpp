@@ -26,6 +26,9 @@ namespace qddot {
 // of x, unless the formula has
 //   void resume(const Formula& run, const X& x, X& own)        continues from the x of `run`
 // A formula of a library that counts by itself has collect_counts(), as Stepper has.
+//
+// If the system has Damping, a step sets next.dissipated: x.dissipated and the energy that friction
+// takes in the step, by the formula's own quadrature of W' = v'Cv.
 class Formula {
  public:
   using X = State;
@@ -45,12 +48,22 @@ class Formula {
   Seconds* clock() { return run_.counted().clock(); }
   double t_end() const { return run_.t_end(); }
 
+  // Whether the system has Damping. Then a step adds the energy that friction takes to
+  // `dissipated` of the state.
+  bool is_damped() const { return system().damping() != nullptr; }
+
   // The functions of CountedSystem.
   void force(const At& at, MutableVec f) { run_.counted().force(at, f); }
   double force_beside(const At& at, MutableVec f, BesideForce& beside) {
     return run_.counted().force_beside(at, f, beside);
   }
   void force(const System& part, const At& at, MutableVec f) { run_.counted().force(part, at, f); }
+  const Vec& friction() const { return run_.counted().friction(); }
+  double power() const { return run_.counted().power(); }
+  double power(const At& at) { return run_.counted().power(at); }
+  void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {
+    run_.counted().subtract_damping(part, at, rate, k);
+  }
   void mean_force(const At& a, const At& b, MutableVec f) { run_.counted().mean_force(a, b, f); }
   void stiffness(const At& at, SymmetricMatrix& k) { run_.counted().stiffness(at, k); }
   void stiffness(const System& part, const At& at, SymmetricMatrix& k) {

@@ -39,7 +39,9 @@ ImplicitStep::ImplicitStep(SystemRun& run, double solve_tolerance)
       before_(system().size()),
       start_(system().size()),
       k_(system().stiffness_pattern()),
-      matrix_(system(), options().solver) {
+      matrix_(system(), options().solver),
+      is_damped_(is_damped()) {
+  if (is_damped_) w_ = velocity_ = Vec::Zero(system().size());
   matrix_.set_tolerance(linear_share * tolerance_);
   if (kinks_ && kinks_->kink_count() == 0) kinks_ = nullptr;
   if (!kinks_) return;
@@ -76,7 +78,7 @@ struct ImplicitStep::Iteration {
 
 Outcome ImplicitStep::solve_stage(const Vec& q, double t, double s) {
   t_ = t;
-  Iteration now{.wants_factors = s != factorized_s_};
+  Iteration now{.wants_factors = s != factorized_s_ || rate_ != factorized_rate_};
   start_ = u_;
   residual(q, s);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -135,6 +137,7 @@ double ImplicitStep::rate_of(const Iteration& now, const Vec& q, double size, bo
 
 // Whether this correction is the exact solution.
 bool ImplicitStep::is_exact(const Vec& q) {
+  if (is_damped_ && !system().damping()->damping_is_constant()) return false;
   return system().stiffness_is_constant() && compression_.kept() == 1 && is_linear_along(q);
 }
 
@@ -174,8 +177,18 @@ void ImplicitStep::residual(const Vec& q, double s) {
 
 void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
   x_ = q + u;
-  force({t_, x_}, f);
+  if (!is_damped_) return force({t_, x_}, f);
+  velocity_ = rate_ * u + w_;
+  force({t_, x_, velocity_}, f);
 }
+
+At ImplicitStep::at_friction(const Vec& q) {
+  x_ = q + friction_part() * u_;
+  velocity_ = rate_ * u_ + w_;
+  return {t_, x_, velocity_};
+}
+
+double ImplicitStep::stage_power(const Vec& q) { return power(at_friction(q)); }
 
 void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                    SymmetricMatrix& k) {
@@ -193,6 +206,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
   bool is_finite = true;
   const bool is_positive = compression_.find([&](double kept) {
     stage_stiffness(q, u_, kept, k_);
+    if (is_damped_) subtract_damping(system(), at_friction(q), rate_, k_);
     is_finite = k_.coeffs().allFinite();
     if (!is_finite) return true;  // factors cannot make it positive
     ++counts().factorizations;
@@ -202,6 +216,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
   if (!is_finite) return Outcome::not_finite;
   if (!is_positive) return indefinite_at(x_);
   factorized_s_ = s;
+  factorized_rate_ = rate_;
   return Outcome::reached_end;
 }
 
@@ -226,6 +241,7 @@ double ImplicitStep::search(const Vec& q, double s) {
   const double norm = std::sqrt(squared_norm(r_)), slope = r_.dot(p_);
   double g = std::numeric_limits<double>::quiet_NaN();
   before_ = u_;
+  if (is_damped_) frozen_ = q + friction_part() * u_;
   double length = 1;
   for (int halvings = 0; halvings < most_halvings; ++halvings, length /= 2) {
     add_scaled(before_, length, p_, u_);
@@ -251,7 +267,10 @@ double ImplicitStep::objective(const Vec& q, double s) {
   x_ = q + u_;
   const double potential = system().potential({t_, x_});
   x_ = u_ - free_;
-  return system().kinetic(x_) + s * potential;
+  const double g = system().kinetic(x_) + s * potential;
+  if (!is_damped_) return g;
+  velocity_ = rate_ * u_ + w_;
+  return g + s / (2 * rate_) * power({t_, frozen_, velocity_});
 }
 
 }  // namespace qddot

@@ -19,6 +19,11 @@ namespace qddot {
 // a part of the compression is kept if M - s K is not positive definite (see compression.hpp). So
 // directions descend, and a step that does not decrease g is halved until it does. A system without
 // V has no g, and its steps are whole.
+//
+// If the system has Damping, f is that at the velocity of the stage, which is linear in u:
+//   v = r u + w,   with r [1/s] and w of the formula.
+// Then Newton's matrix is M - s (K - r C), and g has the term s/(2 r) v'Cv, with C as it is where a
+// step along a direction begins.
 class ImplicitStep : public Formula {
  public:
   // Default parts of a prediction's error that a stage's solve leaves. Less gains nothing for most
@@ -38,6 +43,18 @@ class ImplicitStep : public Formula {
   // of the step's own error. Returns reached_end, newton_failed, indefinite_matrix, not_finite or
   // over_budget.
   Outcome solve_stage(const Vec& q, double t, double s);
+  // Sets v = r u + w of the next stages; for systems with Damping. w is zero if it is left out.
+  void set_velocity(double r) {
+    rate_ = r;
+    w_.setZero();
+  }
+  template <class Expression>
+  void set_velocity(double r, const Eigen::MatrixBase<Expression>& w) {
+    rate_ = r;
+    w_ = w;
+  }
+  // v'Cv [W] at the last stage.
+  double stage_power(const Vec& q);
 
   // a = M^-1 f [m/s^2]; for methods that begin with it.
   void acceleration(const At& at, Vec& a);
@@ -51,6 +68,8 @@ class ImplicitStep : public Formula {
                                SymmetricMatrix& k);
   // Whether a stage's f is the gradient of a potential, so that g exists.
   virtual bool is_minimisation() const { return true; }
+  // The part of u at which a stage's f takes friction.
+  virtual double friction_part() const { return 1; }
   // Whether a stage's f uses forces at q itself, which then have to be linear as well.
   virtual bool knows_start() const { return false; }
 
@@ -71,6 +90,8 @@ class ImplicitStep : public Formula {
   Outcome correction();
   double search(const Vec& q, double s);
   double objective(const Vec& q, double s);
+  // The stage's place and velocity in x_ and velocity_, as the arguments of friction.
+  At at_friction(const Vec& q);
 
   const double tolerance_;
   double t_ = 0;                   // of the stage [s]
@@ -80,7 +101,11 @@ class ImplicitStep : public Formula {
   SymmetricMatrix k_;
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // s of the present factors; 0: none
-  Compression compression_;  // of the present factors
+  const bool is_damped_;
+  double rate_ = 0, factorized_rate_ = 0;  // r, and that of the present factors
+  Vec w_, velocity_;                       // n if the system has Damping
+  Vec frozen_;                             // where C of g is taken
+  Compression compression_;                // of the present factors
   // The error of the last stage's prediction, and the rate of convergence of its corrections.
   double last_missed_ = 0, last_rate_ = 1;
 };

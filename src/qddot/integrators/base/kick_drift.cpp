@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "qddot/integrators/base/kicks_and_drift.hpp"
 
@@ -17,6 +18,7 @@ KickDrift::KickDrift(SystemRun& run, const Splitting& splitting)
     : Formula(run),
       splitting_(splitting),
       kicks_first_(splitting.kicks.size() > splitting.drifts.size()),
+      air_damping_(is_damped() ? system().damping()->air_damping() : 0),
       q_(options().compensated, system().size()),
       v_(options().compensated, system().size()) {}
 
@@ -30,7 +32,7 @@ void KickDrift::begin(const State& state, X& x) {
 }
 
 Outcome KickDrift::step(const X& now, double h, X& next) {
-  if (options().compensated) {
+  if (options().compensated || is_damped()) {
     step_compensated(now, h, next);
   } else if (kicks_first_) {
     step_from_kick(now, h, next);
@@ -78,7 +80,9 @@ void KickDrift::step_compensated(const X& now, double h, X& next) {
   const auto kick = [&](double size) {
     v_.add_quotient(next.v, size * h, next.f, system().mass(), next.v);
   };
-  const auto drift = [&](double size) { q_.add_scaled(next.q, size * h, next.v, next.q); };
+  next.late = 0;
+  next.dissipated = now.dissipated;
+  const auto drift = [&](double size) { this->drift(size * h, next); };
   double t = now.t;
   for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
     if (kicks_first_) kick(kicks[i]);
@@ -92,6 +96,13 @@ void KickDrift::step_compensated(const X& now, double h, X& next) {
   } else {
     drift(drifts.back());
   }
+}
+
+void KickDrift::drift(double h, X& next) {
+  if (air_damping_ == 0) return q_.add_scaled(next.q, h, next.v, next.q);
+  q_.add_scaled(next.q, -std::expm1(-air_damping_ * h) / air_damping_, next.v, next.q);
+  next.dissipated -= std::expm1(-2 * air_damping_ * h) * system().kinetic(next.v);
+  next.v *= std::exp(-air_damping_ * h);
 }
 
 void KickDrift::show(const X& x, bool, State& state) const {

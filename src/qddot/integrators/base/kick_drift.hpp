@@ -23,6 +23,11 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 // one evaluation for each drift, and one at the start. Otherwise each kick takes one evaluation.
 // Each kick is done in one pass over the vectors with the drift after it. So one that ends a step
 // waits for the next step, unless sums are compensated.
+//
+// Air of alpha damps each drift, whose exact motion over x h is then
+//   q += (1 - e^(-alpha x h))/alpha v,   v *= e^(-alpha x h)
+// It is that of a part of the motion as before, so orders stay as they are, and drifts back in time
+// gain what others lose. The energy that it takes is that of the drift.
 class KickDrift final : public Formula {
  public:
   struct X : State {
@@ -42,9 +47,12 @@ class KickDrift final : public Formula {
   void step_from_kick(const X& now, double h, X& next);
   void step_from_drift(const X& now, double h, X& next);
   void step_compensated(const X& now, double h, X& next);
+  // The same with air: h [s] of a drift.
+  void drift(double h, X& next);
 
   const Splitting& splitting_;
   bool kicks_first_;
+  double air_damping_;  // alpha [1/s]
   CompensatedSum q_, v_;
 };
 
