@@ -15,6 +15,7 @@ namespace qddot::simulate {
 Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, const Scene& start,
                  const Model& scene, double until)
     : scene_(scene),
+      is_damped_(is_damped(drawn)),
       trajectory_times_(samples(every.trajectory, until)),
       energy_times_(samples(every.energy, until)),
       motion_times_(samples(every.motion, until)) {
@@ -26,8 +27,10 @@ Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, con
     trajectory_ = std::make_unique<CsvFile>(a.trajectory_path, node_header(d, {"t"}));
   }
   if (!a.energy_path->empty()) {
-    energy_ = std::make_unique<CsvFile>(
-        a.energy_path, std::vector<std::string>{"t", "kinetic", "potential", "total"});
+    std::vector<std::string> columns = {"t", "kinetic", "potential", "total"};
+    if (is_damped_) columns.insert(columns.end(), {"dissipated", "balance"});
+    energy_ = std::make_unique<CsvFile>(a.energy_path, columns);
+    start_energy_ = scene.kinetic(scene.initial()) + scene.potential(scene.initial());
   }
   if (!a.motion_path->empty()) {
     const motion_files::Fields fields =
@@ -56,7 +59,13 @@ void Outputs::see(const State& state) {
   if (energy_ && is_sample(energy_times_, state.t)) {
     const double kinetic = scene_.kinetic(state);
     const double potential = scene_.potential(state);
-    energy_->row(state.t, kinetic, potential, kinetic + potential);
+    const double total = kinetic + potential, dissipated = scene_.dissipated(state);
+    if (is_damped_) {
+      energy_->row(state.t, kinetic, potential, total, dissipated,
+                   total + dissipated - start_energy_);
+    } else {
+      energy_->row(state.t, kinetic, potential, total);
+    }
     energy_->flush_if_large();
   }
   if (motion_ && is_sample(motion_times_, state.t)) motion_->add(state);

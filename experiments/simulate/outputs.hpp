@@ -38,6 +38,8 @@ class Outputs {
 
  private:
   const Model& scene_;
+  const bool is_damped_;
+  double start_energy_ = 0;  // [J]
   std::vector<double> trajectory_times_, energy_times_, motion_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;
   std::unique_ptr<motion_files::MotionFile> motion_;
