@@ -29,6 +29,7 @@
   METHOD(verlet)                   \
   METHOD(position_verlet)          \
   METHOD(rk4)                      \
+  METHOD(rkc)                      \
   METHOD(blanes_moan4)             \
   METHOD(blanes_moan6)             \
   METHOD(kahan_li8)                \

@@ -33,6 +33,9 @@ class Chebyshev final : public LocalGlobal {
     system().laplacian()->assemble_laplacian(l);
     Vec row_sums;
     frequency_ = frequency_bound(system().mass(), l, row_sums);
+    if (!is_damped() || !system().damping()->bound_damping(l)) return;
+    const double root = frequency_bound(system().mass(), l, row_sums);
+    friction_ = root * root;
   }
 
  private:
@@ -40,7 +43,7 @@ class Chebyshev final : public LocalGlobal {
   // interval is better: errors inside shrink faster, and those outside hardly grow.
   void begin_step() override {
     const double hw = step_size() * frequency_;
-    const double widest = hw * hw / (1 + hw * hw);
+    const double size = hw * hw + step_size() * friction_, widest = size / (1 + size);
     const double few = 1 / std::cosh(std::acosh(10.0) / iterations());
     const double sigma = std::min(widest / (2 - widest), few);
     sigma_squared_ = sigma * sigma;
@@ -77,7 +80,8 @@ class Chebyshev final : public LocalGlobal {
     omega_ = omega;
   }
 
-  double frequency_, sigma_squared_ = 0, gamma_ = 1;
+  double frequency_, friction_ = 0;  // bounds of L and of the bound of C, beside M [1/s]
+  double sigma_squared_ = 0, gamma_ = 1;
   double omega_ = 0;  // of the last iteration; 0 at the start of a step, -1 after a plain one
   double size_ = 0;   // r'p of the last iteration
   Vec r_{system().size()}, p_{system().size()}, trial_{system().size()}, before_{system().size()};
@@ -94,7 +98,7 @@ Method local_global_chebyshev() {
           .traits = {Trait::implicit},
           .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
-          .why_not_damped = "its constant matrix has no place for dashpots",
+          .damped = Damped::by_any,
           .make = create<Chebyshev>};
 }
 

@@ -103,7 +103,7 @@ Method local_global_lbfgs() {
           .traits = {Trait::implicit},
           .needs = {Need::conservative, Need::laplacian},
           .takes = {Option::iterations},
-          .why_not_damped = "its constant matrix has no place for dashpots",
+          .damped = Damped::by_any,
           .make = create<Lbfgs>};
 }
 

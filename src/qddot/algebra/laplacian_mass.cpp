@@ -48,9 +48,12 @@ bool same(const SymmetricMatrix& a, const SymmetricMatrix& b) {
 
 }  // namespace
 
-LaplacianMass::LaplacianMass(const System& system) {
+LaplacianMass::LaplacianMass(const System& system, double rate) {
   SymmetricMatrix l = system.stiffness_pattern();
   system.laplacian()->assemble_laplacian(l);
+  if (SymmetricMatrix bound = l; rate > 0 && system.damping()->bound_damping(bound)) {
+    l.coeffs() += rate * bound.coeffs();
+  }
   std::vector<Index> place(static_cast<std::size_t>(l.cols()));
   for (std::vector<Index>& unknowns : joined_unknowns(l)) {
     const Index n = std::ssize(unknowns);

@@ -8,13 +8,15 @@
 
 namespace qddot {
 
-// Solves (M + s L) x = b with the L of Laplacian, which the system must offer. M + s L splits into
-// uncoupled matrices, at least one for each axis, most of which are equal. So the N x N matrix of a
-// network in D dimensions is factorised once, and solves for D right-hand sides at a time.
+// Solves (M + s L) x = b with the L of Laplacian, which the system must offer. With Damping, L has
+// a multiple of the matrix that bounds C as well. M + s L splits into uncoupled matrices, at least
+// one for each axis, most of which are equal. So the N x N matrix of a network in D dimensions is
+// factorised once, and solves for D right-hand sides at a time.
 class LaplacianMass {
  public:
-  // Finds the different matrices and analyses their patterns.
-  explicit LaplacianMass(const System& system);
+  // Finds the different matrices and analyses their patterns. `rate` [1/s]: the multiple of the
+  // matrix of Damping::bound_damping, if the system has that.
+  explicit LaplacianMass(const System& system, double rate = 0);
 
   // Factorises M + s L, s [s^2] >= 0. Returns false if it is not positive definite, as with
   // massless unknowns or numbers that are not finite.

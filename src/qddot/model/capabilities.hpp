@@ -102,6 +102,9 @@ class Damping {
   virtual void damping_matrix(const At& at, SymmetricMatrix& c) const = 0;
   // Whether C is the same at every q.
   virtual bool damping_is_constant() const = 0;
+  // Writes a constant matrix that bounds C everywhere, x'C(q)x <= x'Lx, and couples no different
+  // axes (as Laplacian does), into `l`, and returns true. Returns false if the system has none.
+  virtual bool bound_damping(SymmetricMatrix& /*l*/) const { return false; }
   // alpha [1/s] of the air, and whether there is anything else: if not, C = alpha M.
   virtual double air_damping() const { return 0; }
   virtual bool has_dashpots() const { return true; }

@@ -47,6 +47,12 @@ void ConstrainedSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
   clear_held(c);
 }
 
+bool ConstrainedSystem::bound_damping(SymmetricMatrix& l) const {
+  if (!damping_->bound_damping(l)) return false;
+  clear_held(l);
+  return true;
+}
+
 bool ConstrainedSystem::multiply_stiffness(const ConstVec& q, const ConstVec& x,
                                            MutableVec y) const {
   Vec moved = x;

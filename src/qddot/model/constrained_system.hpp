@@ -65,6 +65,7 @@ class ConstrainedSystem final : public CapableSystem {
   void friction(const At& at, MutableVec f) const override;
   void damping_matrix(const At& at, SymmetricMatrix& c) const override;
   bool damping_is_constant() const override { return damping_->damping_is_constant(); }
+  bool bound_damping(SymmetricMatrix& l) const override;
   double air_damping() const override { return damping_->air_damping(); }
   bool has_dashpots() const override { return damping_->has_dashpots(); }
   std::optional<double> damping_time() const override { return damping_->damping_time(); }

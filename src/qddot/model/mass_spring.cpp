@@ -150,10 +150,13 @@ class MassSpring final : public CapableSystem {
     } else {
       c.coeffs().setZero();
     }
-    if (air_damping_ == 0) return;
-    for (Index i = 0; i < size(); ++i) {  // the diagonal entry is the first of its column
-      c.valuePtr()[c.outerIndexPtr()[i]] += air_damping_ * mass()[i];
-    }
+    add_air(c);
+  }
+  bool bound_damping(SymmetricMatrix& l) const override {
+    l.coeffs().setZero();
+    if (dashpots_) dashpots_->assemble_laplacian(l);
+    add_air(l);
+    return true;
   }
   bool damping_is_constant() const override { return !dashpots_ || D == 1 || !has_rest_lengths_; }
   double air_damping() const override { return air_damping_; }
@@ -292,6 +295,12 @@ class MassSpring final : public CapableSystem {
   void add_friction(const At& at, MutableVec f) const {
     if (dashpots_) dashpots_->add_dashpots(at.q, at.v, f);
     if (air_damping_ > 0) f -= air_damping_ * mass().cwiseProduct(at.v);
+  }
+  void add_air(SymmetricMatrix& c) const {
+    for (Index i = 0; i < size() && air_damping_ > 0; ++i) {
+      // The diagonal entry is the first of its column.
+      c.valuePtr()[c.outerIndexPtr()[i]] += air_damping_ * mass()[i];
+    }
   }
   // Adds the forces of the dashpots whose constants are the stiffnesses of this network.
   void add_dashpots(const VecView& q, const VecView& v, MutableVec f) const {

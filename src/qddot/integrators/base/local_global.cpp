@@ -14,13 +14,18 @@ LocalGlobal::LocalGlobal(SystemRun& run)
     : Formula(run),
       iterations_(options().iterations > 0 ? options().iterations : usual_iterations),
       descends_(system().laplacian()->bounds_stiffness()),
-      matrix_(system()) {}
+      matrix_(system()) {
+  if (!is_damped()) return;
+  SymmetricMatrix l = system().stiffness_pattern();
+  descends_ = descends_ && system().damping()->bound_damping(l);
+}
 
 Outcome LocalGlobal::step(const State& now, double h, State& next) {
   if (h != factorized_h_) {
     ++counts().factorizations;
     const Stopwatch watch(clock(), &Seconds::factorization);
-    if (!matrix_.factorize(h * h)) return Outcome::indefinite_matrix;
+    if (is_damped()) matrix_.emplace(system(), 1 / h);
+    if (!matrix_->factorize(h * h)) return Outcome::indefinite_matrix;
     factorized_h_ = h;
   }
   now_ = &now;
@@ -34,6 +39,7 @@ Outcome LocalGlobal::step(const State& now, double h, State& next) {
     if (!is_finite_) return Outcome::not_finite;
   }
   next.q = now.q + h * next.v;
+  if (is_damped()) next.dissipated = now.dissipated + h * power({t_, now.q, next.v});
   return Outcome::reached_end;
 }
 
@@ -41,12 +47,15 @@ void LocalGlobal::gradient(const Vec& v, Vec& r) {
   q_ = now_->q + h_ * v;
   force({t_, q_}, f_);
   r = system().mass().cwiseProduct(v - now_->v) - h_ * f_;
+  if (!is_damped()) return;
+  power({t_, now_->q, v});
+  r -= h_ * friction();
 }
 
 void LocalGlobal::direction(const Vec& r, Vec& p) {
   ++counts().solves;
   const Stopwatch watch(clock(), &Seconds::solve);
-  matrix_.solve(r, p);
+  matrix_->solve(r, p);
   is_finite_ = std::isfinite(p.sum());
 }
 
@@ -54,7 +63,8 @@ double LocalGlobal::objective(const Vec& v) {
   q_ = v - now_->v;
   const double kinetic = system().kinetic(q_);
   q_ = now_->q + h_ * v;
-  return kinetic + system().potential({t_, q_});
+  const double g = kinetic + system().potential({t_, q_});
+  return is_damped() ? g + h_ / 2 * power({t_, now_->q, v}) : g;
 }
 
 void LocalGlobal::search(Vec& v, const Vec& p, double slope, double& g) {

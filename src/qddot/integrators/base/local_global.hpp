@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "qddot/algebra/laplacian_mass.hpp"
 #include "qddot/integrators/base/fixed_steps.hpp"
 
@@ -13,6 +15,9 @@ namespace qddot {
 // The iterations start from the inertial prediction v = v_n. One iteration of local_global is
 // v = v - p; other methods use the same r and p in their own ways. The matrix is factorised once a
 // step size.
+//
+// Friction is taken with the C of the step's start. It adds h/2 v'C(q_n)v to g, which so stays a
+// minimisation, h C(q_n) v to r, and h times the constant matrix that bounds C to the metric.
 class LocalGlobal : public Formula {
  public:
   explicit LocalGlobal(SystemRun& run);
@@ -47,7 +52,7 @@ class LocalGlobal : public Formula {
  private:
   int iterations_;
   bool descends_;
-  LaplacianMass matrix_;
+  std::optional<LaplacianMass> matrix_;
   const State* now_ = nullptr;               // the start of the present step
   double t_ = 0, h_ = 0, factorized_h_ = 0;  // t_: of its end [s]
   bool is_finite_ = true;                    // whether the last direction is finite
