@@ -29,6 +29,7 @@
   METHOD(verlet)                   \
   METHOD(position_verlet)          \
   METHOD(rk4)                      \
+  METHOD(rk8)                      \
   METHOD(rkc)                      \
   METHOD(blanes_moan4)             \
   METHOD(blanes_moan6)             \

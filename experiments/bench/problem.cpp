@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kit/reference_file.hpp"
+#include "experiments/kit/scene_choice.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 
 Reference reference_of(const Scene& drawn, const Scene& start, const Model& scene, double until,
                        const std::string& folder, const nlohmann::json& origin) {
+  require_undamped(drawn, drawn.name, "the other solvers are asked for motions without damping");
   require_reference_exists(scene, drawn.name);
   Reference reference = reference_for(drawn, start, scene, until, folder, origin);
   if (reference.is_beyond_horizon()) {

@@ -4,6 +4,10 @@
 //   crossover --family frame --out results/frame
 //   crossover --family chain --ratios 1,1e3,1e6 --methods verlet,ida --out results/chain
 //
+// With --damping-ratio Z, each spring has a dashpot in proportion to its stiffness, c = beta k.
+// Then beta is 2 Z/w_max of the scene at its start, so that Z is the damping ratio of its highest
+// mode.
+//
 //  1. Each ratio has a scene and a reference (agreed_reference) that is good to a tenth of the
 //     finest accuracy. It is kept in ratio_R/reference.json for the next time.
 //  2. Methods are measured as in work_precision, those first that were fast at the former ratio.
@@ -36,11 +40,19 @@
 #include "experiments/crossover/ratio_race.hpp"
 #include "experiments/crossover/stiff_scenes.hpp"
 #include "experiments/kit/allowed_options.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 
 namespace qddot::crossover {
 namespace {
 
 constexpr double largest_ratio = 1e9;  // beyond it rounding of stiff forces is felt
+constexpr double largest_zeta = 1e6;
+
+// Gives each spring a dashpot, so that zeta is the damping ratio of the highest mode at the start.
+void damp(Scene& scene, double zeta) {
+  const Model model(scene);
+  damp_springs(2 * zeta / quick_frequency(model.system(), model.initial().q), scene);
+}
 
 void require_ratio(double ratio, const std::string& option) {
   if (ratio >= 1 && ratio <= largest_ratio) return;
@@ -81,6 +93,14 @@ int main(int argc, char** argv) {
                           "a,b,...: stiffness ratios, how many times stiffer the stiff springs are")
                     .check_each(require_ratio)
                     .check(require_each_once<double>);
+  auto zeta = p.number("--damping-ratio", 0,
+                       "the damping ratio of the highest mode, by dashpots along the springs")
+                  .last()
+                  .check([](double ratio, const std::string& option) {
+                    if (ratio >= 0 && ratio <= largest_zeta) return;
+                    throw InvalidInput(fmt::format("{}: {} is not allowed; it is from 0 to {:g}",
+                                                   option, ratio, largest_zeta));
+                  });
   auto list = p.methods("a,b,...: the methods (default: all but the stock ways of SUNDIALS, _klu)");
   auto effort = p.effort({.seconds = 5, .repeats = 3});
   auto& winners = p.table(
@@ -98,12 +118,14 @@ int main(int argc, char** argv) {
     for (const double ratio : ascending) {
       const double end = until.is_given() ? *until : family.until;
       Scene drawn = family.draw(nodes.is_given() ? *nodes : family.nodes, end, ratio);
+      if (*zeta > 0) damp(drawn, zeta);
       all.push_back({.ratio = ratio, .subject = {*name, drawn, drawn, Model(drawn), end}});
       shares.names.push_back(all.back().name());
     }
     const auto methods = competitors(list, all.back().subject);
     const nlohmann::json about = {{"family", *name},
                                   {"until", all.front().subject.until},
+                                  {"damping_ratio", *zeta},
                                   {"nodes", all.front().subject.drawn.nodes.size()}};
     std::ptrdiff_t complete = 0;
     return p.study(

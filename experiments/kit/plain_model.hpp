@@ -50,7 +50,8 @@ class PlainModel {
  public:
   using Vector = std::vector<Real>;
 
-  explicit PlainModel(const Scene& scene) : scene_(scene), has_loads_(has_loads(scene)) {
+  explicit PlainModel(const Scene& scene)
+      : scene_(scene), has_loads_(has_loads(scene)), is_damped_(qddot::is_damped(scene)) {
     if (is_far(scene)) std::copy_n(scene.nodes[0].position.data(), 3, origin_.begin());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
       if (!scene.nodes[i].pinned && scene.nodes[i].mass == 0) massless_.push_back(i);
@@ -86,18 +87,51 @@ class PlainModel {
     }
   }
 
+  bool is_damped() const { return is_damped_; }
+  // Adds the forces of dashpots and air to f, and returns the power that they take [W]: a dashpot
+  // pulls its ends together by c l' along it, and of rest or length zero by c times the rate at
+  // which they part.
+  Real add_friction(const Vector& x, const Vector& v, Vector& f) const {
+    Real power = 0;
+    for (const Spring& spring : scene_.springs) {
+      if (spring.law.damping == 0) continue;
+      const auto [i, j] = spring.nodes;
+      Real d[3], w[3], along = 0;
+      const Real l2 = squared_length(spring, x, d);
+      for (std::size_t c = 0; c < 3; ++c) {
+        w[c] = v[3 * j + c] - v[3 * i + c];
+        along += d[c] * w[c];
+      }
+      const bool has_direction = spring.law.rest_length > 0 && l2 > 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Real pull = Real(spring.law.damping) * (has_direction ? along / l2 * d[c] : w[c]);
+        f[3 * i + c] += pull;
+        f[3 * j + c] -= pull;
+        power += pull * w[c];
+      }
+    }
+    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+      const Node& node = scene_.nodes[i];
+      const Real alpha_m = node.pinned ? Real(0) : Real(scene_.air_damping) * Real(node.mass);
+      for (std::size_t c = 0; c < 3; ++c) {
+        f[3 * i + c] -= alpha_m * v[3 * i + c];
+        power += alpha_m * v[3 * i + c] * v[3 * i + c];
+      }
+    }
+    return power;
+  }
+
   // a = f/m + g [m/s^2] of nodes with mass; zero for all others.
   void acceleration(const Vector& x, Vector& a) const {
     forces_without_weights(x, a);
-    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
-      const Node& node = scene_.nodes[i];
-      const bool moves = !node.pinned && node.mass > 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        Real& own = a[3 * i + c];
-        own = moves ? own / Real(node.mass) + Real(scene_.gravity[static_cast<Eigen::Index>(c)])
-                    : Real(0);
-      }
-    }
+    divide_by_masses(a);
+  }
+  // The same with friction, whose power is returned.
+  Real acceleration(const Vector& x, const Vector& v, Vector& a) const {
+    forces_without_weights(x, a);
+    const Real power = add_friction(x, v, a);
+    divide_by_masses(a);
+    return power;
   }
 
   // 1/2 v'Mv + V [J]; weights and loads of pinned nodes do not count. x is from zero.
@@ -125,6 +159,18 @@ class PlainModel {
   bool place_massless(Vector& x) const;
 
  private:
+  // f/m + g in the place of f.
+  void divide_by_masses(Vector& f) const {
+    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+      const Node& node = scene_.nodes[i];
+      const bool moves = !node.pinned && node.mass > 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        Real& own = f[3 * i + c];
+        own = moves ? own / Real(node.mass) + Real(scene_.gravity[static_cast<Eigen::Index>(c)])
+                    : Real(0);
+      }
+    }
+  }
   static bool is_far(const Scene& scene) {
     double nearest = 0, farthest = 0;
     for (const Node& node : scene.nodes) {
@@ -149,7 +195,7 @@ class PlainModel {
   }
 
   Scene scene_;
-  bool has_loads_;
+  bool has_loads_, is_damped_;
   std::vector<std::size_t> massless_;
   std::array<Real, 3> origin_{};
 };

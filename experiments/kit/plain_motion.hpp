@@ -11,18 +11,22 @@
 namespace qddot {
 inline namespace kit {
 
-// Positions [m] and velocities [m/s] of all nodes at the time t [s].
+// Positions [m] and velocities [m/s] of all nodes at the time t [s], and the energy that damping
+// has taken [J].
 template <class Real>
 struct PlainState {
   Real t = 0;
   std::vector<Real> x, v;
+  Real dissipated = 0;
 };
 
 // The motion of a scene's drawn nodes by extrapolation (Hairer, Norsett, Wanner, Solving Ordinary
 // Differential Equations I, II.14). Verlet's method makes a long step H of n = 1, 2, ... short
 // ones. Its error is in even powers of 1/n; Aitken and Neville's scheme removes it up to order 24
 // (16 in long double). H is chosen so that the last two orders agree to `tolerance` of the motion's
-// size. A model of other forces has the functions of PlainModel that are called here.
+// size. If the model is damped, Gragg's method makes the short steps, 2n of them: its error is in
+// even powers, too, for forces that depend on velocities. A model of other forces has the functions
+// of PlainModel that are called here; is_damped() and what that leads to may be missing.
 template <class Real, class Model = PlainModel<Real>>
 class PlainMotion {
  public:
@@ -77,7 +81,7 @@ class PlainMotion {
         forced_in_a_row = ratio > 1 ? forced_in_a_row + 1 : 0;
         if (forced_in_a_row > most_forced_in_a_row) return false;
         forced_ += ratio > 1;
-        now_.x = x_[0], now_.v = v_[0];
+        now_.x = x_[0], now_.v = v_[0], now_.dissipated = dissipated_[0];
         now_.t = is_last ? until : now_.t + h;
         if (!model_.place_massless(now_.x)) return false;
       }
@@ -107,19 +111,26 @@ class PlainMotion {
       const int count = j + 1;
       const Real s = h / Real(count);
       Vector x = now_.x, v = now_.v;
-      for (std::size_t c = 0; c < n; ++c) v[c] += s / 2 * a0[c];
-      for (int k = 1; k <= count; ++k) {
-        for (std::size_t c = 0; c < n; ++c) x[c] += s * v[c];
-        if (!model_.place_massless(x)) return {};
-        model_.acceleration(x, a);
-        const Real part = k < count ? s : s / 2;
-        for (std::size_t c = 0; c < n; ++c) v[c] += part * a[c];
+      if (is_damped()) {
+        const std::optional<Real> dissipated = gragg_steps(s / 2, 2 * count, x, v);
+        if (!dissipated) return {};
+        dissipated_[j] = *dissipated;
+      } else {
+        for (std::size_t c = 0; c < n; ++c) v[c] += s / 2 * a0[c];
+        for (int k = 1; k <= count; ++k) {
+          for (std::size_t c = 0; c < n; ++c) x[c] += s * v[c];
+          if (!model_.place_massless(x)) return {};
+          model_.acceleration(x, a);
+          const Real part = k < count ? s : s / 2;
+          for (std::size_t c = 0; c < n; ++c) v[c] += part * a[c];
+        }
       }
       x_[j] = x, v_[j] = v;
       // x_[k] becomes the entry of order 2 (j - k + 1) of row j, from right to left.
       for (int k = j - 1; k >= 0; --k) {
         if (k == 0) last_x = x_[1], last_v = v_[1];
         const Real weight = Real((j + 1) * (j + 1)) / Real((k + 1) * (k + 1)) - 1;
+        dissipated_[k] = dissipated_[k + 1] + (dissipated_[k + 1] - dissipated_[k]) / weight;
         for (std::size_t c = 0; c < n; ++c) {
           x_[k][c] = x_[k + 1][c] + (x_[k + 1][c] - x_[k][c]) / weight;
           v_[k][c] = v_[k + 1][c] + (v_[k + 1][c] - v_[k][c]) / weight;
@@ -147,6 +158,46 @@ class PlainMotion {
     return error;
   }
 
+  bool is_damped() const {
+    if constexpr (requires { model_.is_damped(); }) return model_.is_damped();
+    return false;
+  }
+
+  // Makes `count` steps s of Gragg's method with its last smoothing, from x and v. Returns the
+  // energy that friction has taken by then; empty if a massless node found no place.
+  std::optional<Real> gragg_steps(Real s, int count, Vector& x, Vector& v) const {
+    if constexpr (!requires { model_.is_damped(); })
+      return {};
+    else {
+      const std::size_t n = x.size();
+      Vector last_x = x, last_v = v, a(n);
+      Real dissipated = now_.dissipated, last_dissipated = dissipated;
+      for (int k = 0; k <= count; ++k) {
+        const Real power = model_.acceleration(x, v, a);
+        const Real part = k == 0 || k == count ? s : 2 * s;
+        // y_{k+1} = y_{k-1} + 2 s F(y_k); the first is Euler's, the last (y_n + y_{n-1} + s F)/2.
+        for (std::size_t c = 0; c < n; ++c) {
+          last_x[c] += part * v[c];
+          last_v[c] += part * a[c];
+        }
+        last_dissipated += part * power;
+        if (k == count) {
+          for (std::size_t c = 0; c < n; ++c) {
+            x[c] = (x[c] + last_x[c]) / 2;
+            v[c] = (v[c] + last_v[c]) / 2;
+          }
+          dissipated = (dissipated + last_dissipated) / 2;
+        } else {
+          std::swap(x, last_x);
+          std::swap(v, last_v);
+          std::swap(dissipated, last_dissipated);
+        }
+        if (!model_.place_massless(x)) return {};
+      }
+      return dissipated;
+    }
+  }
+
   // A result that is not a number is kept, not lost.
   static void take_larger(Real& largest, Real value) {
     if (!(value <= largest)) largest = value;
@@ -159,6 +210,7 @@ class PlainMotion {
   bool stands_ = false;
   int forced_ = 0, tried_ = 0;
   Vector x_[levels], v_[levels];
+  Real dissipated_[levels] = {};
 };
 
 template <template <class> class Model, class Real>

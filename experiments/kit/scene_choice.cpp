@@ -97,6 +97,12 @@ Subject subject_of(Scene drawn, const SceneChoice& choice, double until) {
   return {choice.name, std::move(drawn), std::move(settled), std::move(model), until};
 }
 
+void require_undamped(const Scene& drawn, const std::string& source, const std::string& why) {
+  if (!is_damped(drawn)) return;
+  throw InvalidInput(fmt::format(
+      "{}: it is damped, and {}; allowed are scenes without damping and air_damping", source, why));
+}
+
 void require_fit(const Method& method, const Model& model, const std::string& source) {
   const auto why = misfit(method, model.system());
   const auto others = [&] {

@@ -26,6 +26,11 @@ namespace {
 
 const char* yes(bool holds) { return holds ? "yes" : "no"; }
 
+// The damping that a method takes.
+const char* damping_word(Damped damped) {
+  return damped == Damped::by_any ? "any" : damped == Damped::by_air ? "air" : "none";
+}
+
 // Print the methods, or the scene generators with their parameters, as a table or as CSV.
 void print_methods(bool as_csv, bool with_newer) {
   std::vector<Method> listed = methods();
@@ -33,7 +38,8 @@ void print_methods(bool as_csv, bool with_newer) {
   if (as_csv) {
     Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
              "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
-             "takes_iterations", "summary", "source", "stock_of", "needs_sundials"});
+             "takes_iterations", "summary", "source", "stock_of", "needs_sundials", "damping",
+             "why_not_damped"});
     for (const Method& m : listed) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
               yes(m.is(Trait::symplectic)),
@@ -41,7 +47,7 @@ void print_methods(bool as_csv, bool with_newer) {
               yes(m.is(Trait::accepts_massless)), yes(m.asks(Need::constant_stiffness)),
               yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
               yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of,
-              sundials_needed(m));
+              sundials_needed(m), damping_word(m.takes_damping()), m.why_not_damped);
     }
     fmt::print("{}", csv.text());
     return;

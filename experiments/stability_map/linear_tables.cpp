@@ -20,6 +20,7 @@ namespace qddot::stability_map {
 namespace {
 
 constexpr int linear_points = 60;  // a decade
+constexpr std::array damping_ratios = {0.01, 0.03, 0.1, 0.3, 1., 3., 10.};
 constexpr std::array fast_frequencies = {1., 10., 100., 1000.};
 
 std::string or_none(double limit) {
@@ -61,7 +62,7 @@ std::string modal_row(const Method& method, const Mode& mode, const Model& rest,
   LinearStep predicted{}, measured{};
   std::string verdict;
   try {
-    predicted = linear_step(method, h * mode.omega);
+    predicted = linear_step(method, h * mode.omega, {}, mode.zeta);
     measured = modal_step(method, rest, mode, {.step_size = h});
     verdict = modal_verdict(measured);
   } catch (const std::exception& why) {  // may not leave a thread
@@ -79,6 +80,7 @@ std::string modal_row(const Method& method, const Mode& mode, const Model& rest,
       csv.field(step->roots.empty() ? none : (step->*number)());
   }
   csv.field(verdict);
+  csv.field(mode.zeta);
   csv.end_row();
   return std::string(csv.text());
 }
@@ -123,6 +125,28 @@ void print(const std::vector<Limit>& limits) {
     fmt::print("{:<29} {:>18} {:>18} {:>12}\n", limit.method->name, or_none(limit.predicted),
                or_none(limit.measured),
                std::isfinite(difference) ? fmt::format("{:.1e}", difference) : "");
+  }
+}
+
+void tabulate_damped_limits(Study& study, Csv& csv, const std::vector<const Method*>& methods) {
+  std::vector<const Method*> damped = methods;
+  std::erase_if(damped, [](const Method* method) {
+    return !has_linear_step(*method) || method->takes_damping() != Damped::by_any ||
+           method->is(Trait::implicit) || method->asks(Need::constant_stiffness);
+  });
+  progress().begin(damped.size());
+  for (const Method* method : damped) {
+    const auto rows = study.piece("damped limits of " + method->name, [&] {
+      Csv own;
+      for (const double zeta : damping_ratios) {
+        const double predicted = damped_limit(*method, zeta);
+        const double measured = measured_limit(*method, zeta);
+        own.row(method->name, zeta, predicted, measured, (measured - predicted) / predicted);
+      }
+      return nlohmann::json(std::string(own.text()));
+    });
+    csv.rows(rows.get<std::string>());
+    progress().finish("damped limits of " + method->name + " are found");
   }
 }
 

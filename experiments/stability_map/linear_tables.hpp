@@ -32,6 +32,10 @@ void add_limits(Study& study, const std::vector<const Method*>& methods,
 void tabulate(Csv& csv, const std::vector<Limit>& limits, double omega_max);
 void print(const std::vector<Limit>& limits);
 
+// Writes damped_limits.csv: the largest h w at which no vibration of a damping ratio from 0.01 to
+// 10 grows, of each method that takes dashpots. The rows of a method are a piece of the study.
+void tabulate_damped_limits(Study& study, Csv& csv, const std::vector<const Method*>& methods);
+
 // Writes linear.csv: the spectral radius, damping ratio and period error of each linear step.
 void tabulate_linear(Csv& csv, const std::vector<const Method*>& methods);
 // Writes adaptive.csv: the steps that adaptive methods choose. The row of each method, tolerance
@@ -40,7 +44,8 @@ void tabulate_adaptive(Study& study, Csv& csv, const std::vector<const Method*>&
 
 // Writes modal.csv: a row for each method that has a step of its own and each of a dozen natural
 // modes of the scene at rest. A row has the damping ratio, period error and spectral radius,
-// predicted on an oscillator and measured by exciting the mode, and the verdict. If a method fails
+// predicted on an oscillator of the same physical damping ratio and measured by exciting the mode,
+// and the verdict. What exceeds the physical damping ratio is the method's own. If a method fails
 // to make the steps, the reason replaces the verdict. h = `step_size` [s], or 1/w_max if that is 0.
 // Runs on all cores (OpenMP); the rows of a method are a piece of the study.
 void tabulate_modes(Study& study, Csv& csv, const std::vector<const Method*>& methods,

@@ -9,6 +9,7 @@
 //     h w from 0.01 to 100. They also have the h w at which it starts to grow, predicted and found
 //     by bisection (linear_limit.hpp). That h w over w_max of the scene at its start gives h.
 //     adaptive.csv: the steps of methods that choose them (linear_tables.hpp).
+//     damped_limits.csv, of a damped scene: the same limit for damping ratios from 0.01 to 10.
 //  2. modal.csv: the same in natural modes of the scene about its equilibrium at one h
 //     (modal_step.hpp), predicted as in 1 and measured by exciting the mode.
 //  3. map.csv: outcomes of whole runs over h w_max and amplitude (run_outcome.hpp). A run of
@@ -84,10 +85,14 @@ int main(int argc, char** argv) {
       p.table("adaptive.csv",
               {"method", "rtol", "omega_fast", "outcome", "h_omega_mean", "rejected_share",
                "energy_fast", "energy_error", "steps", "rejected", "stability_limited_steps"});
-  auto& modal_csv = p.table(
-      "modal.csv", {"method", "h", "mode", "omega", "h_omega", "damping_ratio_predicted",
-                    "damping_ratio_measured", "period_error_predicted", "period_error_measured",
-                    "spectral_radius_predicted", "spectral_radius_measured", "verdict"});
+  auto& modal_csv =
+      p.table("modal.csv", {"method", "h", "mode", "omega", "h_omega", "damping_ratio_predicted",
+                            "damping_ratio_measured", "period_error_predicted",
+                            "period_error_measured", "spectral_radius_predicted",
+                            "spectral_radius_measured", "verdict", "damping_ratio_physical"});
+  auto& damped_csv =
+      p.table("damped_limits.csv", {"method", "damping_ratio", "h_omega_limit_predicted",
+                                    "h_omega_limit_measured", "relative_difference"});
   auto& map_csv =
       p.table("map.csv", {"method", "h", "h_omega", "amplitude", "outcome", "growth_rate",
                           "predicted_growth_rate", "t_reached", "energy_end", "energy_max", "steps",
@@ -119,6 +124,7 @@ int main(int argc, char** argv) {
       add_limits(study, taken, limits);
       tabulate_linear(*linear_csv, taken);
       tabulate_adaptive(study, *adaptive_csv, taken);
+      if (is_damped(subject.drawn)) tabulate_damped_limits(study, *damped_csv, taken);
       if (rest) {
         const Model at_rest(*rest, Reductions::all_directions());
         tabulate_modes(study, *modal_csv, taken, at_rest, step_size);

@@ -25,7 +25,7 @@
 namespace qddot::registered {
 namespace {
 
-constexpr double e = 2. / 13;
+constexpr double epsilon = 2. / 13;
 // With fewer stages the circle of vibrations is too small; with more, rounding grows as s^2.
 constexpr int fewest_stages = 4, most_stages = 250;
 // The power method ends when its estimate rises by less than a part of it, or after so many
@@ -36,7 +36,7 @@ constexpr int most_products = 50;
 constexpr int steps_with_one = 25;
 
 // The largest h times an eigenvalue on the negative real axis.
-double reach(int stages) { return 2. / 3 * (stages * stages - 1.) * (1 - 2 * e / 15); }
+double reach(int stages) { return 2. / 3 * (stages * stages - 1.) * (1 - 2 * epsilon / 15); }
 
 // The coefficients of the stages after the first, and that of the first.
 struct Stage {
@@ -48,7 +48,7 @@ struct Stages {
 };
 
 Stages stages_of(int s) {
-  const double w0 = 1 + e / (s * s);
+  const double w0 = 1 + epsilon / (s * s);
   std::vector<double> t = {1, w0}, d = {0, 1}, dd = {0, 0}, b(static_cast<std::size_t>(s) + 1);
   for (std::size_t j = 2; j < b.size(); ++j) {
     t.push_back(2 * w0 * t[j - 1] - t[j - 2]);

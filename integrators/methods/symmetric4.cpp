@@ -15,9 +15,11 @@
 // The first steps are then those of the classical Runge-Kutta method, four for each, and the energy
 // W that friction takes, W' = p = v'Cv, is that of Adams and Moulton:
 //   W_{n+1} = W_n + h/24 (9 p_{n+1} + 19 p_n - 5 p_{n-1} + p_{n-2})
+#include <algorithm>
 #include <array>
 
 #include "integrators/methods/tables.hpp"
+#include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/integrators/base/fixed_steps.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/vector_updates.hpp"
@@ -132,7 +134,27 @@ class Damped4 final : public Formula {
   Vec f_{system().size()};
 };
 
-std::unique_ptr<Stepper> make(SystemRun& run) {
+// The roots of these recurrences on q'' = -w^2 q - 2 zeta w q', in units of a step: the eigenvalues
+// of the matrix that leads from q_n ... q_{n-3}, a_n, a_{n-1}, a_{n-2} to the next.
+std::vector<std::complex<double>> damped_roots(double h_omega, double zeta) {
+  if (zeta == 0) return symmetric_roots<symmetric4_formula>(h_omega, 0);
+  using Row = Eigen::Matrix<double, 1, 7>;
+  Row next_q, next_v, next_a;
+  next_q << 5. / 2, -3, 5. / 2, -1, 9. / 8, -6. / 8, 9. / 8;
+  next_v = next_q;
+  next_v += Row{{-1, 0, 0, 0, 9. / 8, -11. / 12, 7. / 24}};
+  next_a = -h_omega * h_omega * next_q - 2 * zeta * h_omega * next_v;
+  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(7, 7);
+  step.row(0) = next_q;
+  step.row(4) = next_a;
+  for (const int i : {1, 2, 3, 5, 6}) step(i, i - 1) = 1;
+  const Eigen::VectorXcd values = general_values(step);
+  std::vector<std::complex<double>> all(values.begin(), values.end());
+  std::ranges::sort(all, std::ranges::greater(), [](const auto& root) { return std::abs(root); });
+  return all;
+}
+
+std::unique_ptr<Stepper> create_symmetric4(SystemRun& run) {
   if (run.system().damping()) return create<Damped4>(run);
   return create_symmetric(run);
 }
@@ -149,12 +171,12 @@ Method symmetric4() {
           "1694-1700",
       .order = 4,
       .stability_limit = 1.8257418583505537,
-      .recurrence_roots = symmetric_roots<symmetric4_formula>,
+      .recurrence_roots = damped_roots,
       .traits = {Trait::remembers_steps},
       .needs = {Need::conservative},
       .symmetric_formula = &symmetric4_formula(),
       .damped = Damped::by_any,
-      .make = make};
+      .make = create_symmetric4};
 }
 
 }  // namespace qddot::registered

@@ -129,7 +129,7 @@ class TakahashiImada4 final : public Formula {
   Vec middle_{system().size()}, x_{system().size()};
 };
 
-std::vector<std::complex<double>> roots(double h_omega) {
+std::vector<std::complex<double>> roots(double h_omega, double /*zeta*/) {
   const double z = h_omega * h_omega, cosine = 1 - z / 2 + z * z / 24;
   // 1 - cosine and 1 + cosine without cancellation.
   const double less = z / 2 * (1 - z / 12), more = 2 - less;

@@ -95,6 +95,7 @@ Method verlet() {
           .source = "Hairer, Lubich, Wanner, Acta Numerica 12 (2003) 399-450, eq. 1.5",
           .order = 2,
           .stability_limit = 2,
+          .friction_lag = 2,
           .traits = {Trait::symplectic, Trait::reversible},
           .needs = {Need::conservative},
           .takes = {Option::compensated},

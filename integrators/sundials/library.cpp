@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -14,6 +13,8 @@ namespace {
 // The tolerance of constant steps is for Newton's iteration alone, whose error should be
 // negligible.
 constexpr double newton_rtol = 1e-10;
+// The tolerance [J] of an energy that decides no step; its inverse is no subnormal number.
+constexpr double unlimited = 1e200;
 
 }  // namespace
 
@@ -31,7 +32,7 @@ Library::Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_
   absolute.q.setConstant(is_given ? options().atol : rtol() * options().length);
   absolute.v.setConstant(is_given ? options().atol : rtol() * options().speed);
   // The energy that friction takes follows the motion, and decides no step.
-  if (has_dissipated(atol())) dissipated(atol()) = std::numeric_limits<double>::max();
+  if (has_dissipated(atol())) dissipated(atol()) = unlimited;
   if (!make_matrix) return;
   k_ = implicit_part.stiffness_pattern();
   if (implicit_part.damping()) c_ = k_;

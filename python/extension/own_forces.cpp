@@ -27,7 +27,7 @@ void inside(const Work& work) {
 // Writes entries (i, j) of K to their places in the pattern.
 class Filling {
  public:
-  explicit Filling(SymmetricMatrix& k) : k_(k) { k.coeffs().setZero(); }
+  Filling(SymmetricMatrix& k, const char* what) : k_(k), what_(what) { k.coeffs().setZero(); }
 
   // Starts a column, whose rows ascend.
   void begin(Index column) {
@@ -40,47 +40,47 @@ class Filling {
     if (at_ < end && k_.innerIndexPtr()[at_] == row) {
       k_.valuePtr()[at_] = value;
     } else if (value != 0) {
-      throw std::invalid_argument(
-          fmt::format("stiffness: entry ({}, {}) is {:g}, and the pattern has none there, which is "
-                      "that of the first K; allowed are its entries, or a pattern= that has all",
-                      row, column_, value));
+      throw std::invalid_argument(fmt::format(
+          "{}: entry ({}, {}) is {:g}, and the pattern has none there, which is that of "
+          "the first K; allowed are its entries, or a pattern= that has all",
+          what_, row, column_, value));
     }
   }
 
  private:
   SymmetricMatrix& k_;
+  const char* what_;
   Index column_ = 0, at_ = 0;
 };
 
-void require_shape(const std::string& is, Index n) {
-  throw std::invalid_argument(fmt::format("stiffness: {}; allowed is {} x {}", is, n, n));
+void require_shape(const char* what, const std::string& is, Index n) {
+  throw std::invalid_argument(fmt::format("{}: {}; allowed is {} x {}", what, is, n, n));
 }
 
-void fill_dense(const py::object& result, SymmetricMatrix& k) {
+void fill_dense(const py::object& result, const char* what, SymmetricMatrix& k) {
   const Doubles dense = Doubles::ensure(result);
   const Index n = k.cols();
   if (!dense || dense.ndim() != 2 || dense.shape(0) != n || dense.shape(1) != n)
-    require_shape("it returned something else", n);
-  Filling filling(k);
+    require_shape(what, "it returned something else", n);
+  Filling filling(k, what);
   for (Index j = 0; j < n; ++j) {
     filling.begin(j);
     for (Index i = j; i < n; ++i) filling.put(i, dense.at(i, j));
   }
 }
 
-void fill_columns(const py::tuple& columns, SymmetricMatrix& k) {
+void fill_columns(const py::tuple& columns, const char* what, SymmetricMatrix& k) {
   const auto data = columns[0].cast<Doubles>();
   const auto rows = columns[1].cast<Indices>(), first = columns[2].cast<Indices>();
   if (first.size() != k.cols() + 1)
-    require_shape(fmt::format("it has {} columns", first.size() - 1), k.cols());
+    require_shape(what, fmt::format("it has {} columns", first.size() - 1), k.cols());
   const std::int64_t entries = std::min(data.size(), rows.size());
   bool ascends = first.at(0) >= 0;
   for (Index j = 0; j < k.cols(); ++j) ascends = ascends && first.at(j) <= first.at(j + 1);
   if (!ascends || first.at(k.cols()) > entries)
-    throw std::invalid_argument(
-        "stiffness: its sparse matrix is broken: indptr does not ascend "
-        "within its entries");
-  Filling filling(k);
+    throw std::invalid_argument(fmt::format(
+        "{}: its sparse matrix is broken: indptr does not ascend within its entries", what));
+  Filling filling(k, what);
   for (Index j = 0; j < k.cols(); ++j) {
     filling.begin(j);
     for (std::int64_t a = first.at(j); a < first.at(j + 1); ++a) {
@@ -124,12 +124,15 @@ void Views::part(const py::object& view) {
 }
 
 OwnForces::OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Potential potential,
-                     py::object stiffness, SymmetricMatrix pattern, bool is_linear)
+                     py::object stiffness, SymmetricMatrix pattern, bool is_linear,
+                     py::object damping, SymmetricMatrix damping_pattern)
     : System(std::move(mass)),
       force_(std::move(force)),
       potential_(std::move(potential)),
       stiffness_(std::move(stiffness)),
+      damping_(std::move(damping)),
       pattern_(std::move(pattern)),
+      c_(std::move(damping_pattern)),
       is_linear_(is_linear),
       views_(std::move(shape)) {}
 
@@ -138,7 +141,7 @@ OwnForces::~OwnForces() {
   const py::gil_scoped_acquire acquired;
   force_ = CForce{};
   potential_ = {};
-  stiffness_ = {};
+  stiffness_ = damping_ = {};
   views_ = Views({});
 }
 
@@ -156,6 +159,25 @@ void OwnForces::call(const py::object& callable, const char* name, const ConstVe
 }
 
 void OwnForces::force(const At& at, MutableVec f) const {
+  elastic_force(at, f);
+  if (damping_.is_none() || at.v.size() == 0) return;
+  Vec of_damping(f.size());
+  friction(at, of_damping);
+  f += of_damping;
+}
+
+void OwnForces::friction(const At& at, MutableVec f) const {
+  inside([&] {
+    damping_matrix(at, c_);
+    f = -(c_.selfadjointView<Eigen::Lower>() * at.v);
+  });
+}
+
+void OwnForces::damping_matrix(const At& at, SymmetricMatrix& c) const {
+  fill(damping_, "damping", at.q, c);
+}
+
+void OwnForces::elastic_force(const At& at, MutableVec f) const {
   const VecView& q = at.q;
   if (const auto* c = std::get_if<CForce>(&force_)) return (*c)(q.data(), f.data(), q.size());
   inside([&] {
@@ -192,13 +214,18 @@ double OwnForces::potential(const At& at) const {
 }
 
 void OwnForces::stiffness(const At& at, SymmetricMatrix& k) const {
+  fill(stiffness_, "stiffness", at.q, k);
+}
+
+void OwnForces::fill(const py::object& of, const char* what, const ConstVec& q,
+                     SymmetricMatrix& matrix) const {
   inside([&] {
-    call(stiffness_, "stiffness", at.q, [&](const py::object& callable, py::object& x) {
+    call(of, what, q, [&](const py::object& callable, py::object& x) {
       const py::object result = callable(x);
       if (py::isinstance<py::tuple>(result)) {
-        fill_columns(result, k);
+        fill_columns(result, what, matrix);
       } else {
-        fill_dense(result, k);
+        fill_dense(result, what, matrix);
       }
     });
   });

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "python/extension/arrays.hpp"
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot::python {
 
@@ -40,15 +40,17 @@ class Views {
 //   stiffness(q)   returns K [N/m], n x n and symmetric: dense, or a tuple (data, indices, indptr)
 //                  of its sorted columns
 // q and f are arrays of `shape` over the solver's memory, q read-only.
-class OwnForces final : public System {
+//   damping(q)     returns C [N s/m], likewise: f gets -C(q) v
+class OwnForces final : public System, public Damping {
  public:
   using Force = std::variant<CForce, py::object>;
   using Potential = std::variant<std::monostate, CPotential, py::object>;
 
-  // `pattern`: the pattern of K; 0 x 0 without a stiffness. `is_linear`: whether K is the same
-  // everywhere.
+  // `pattern`: the pattern of K; 0 x 0 without a stiffness. `is_linear`: whether K and C are the
+  // same everywhere. `damping`: None for none; `damping_pattern` is that of C.
   OwnForces(Vec mass, std::vector<py::ssize_t> shape, Force force, Potential potential,
-            py::object stiffness, SymmetricMatrix pattern, bool is_linear);
+            py::object stiffness, SymmetricMatrix pattern, bool is_linear, py::object damping,
+            SymmetricMatrix damping_pattern);
   ~OwnForces() override;
 
   bool has_potential() const override { return potential_.index() > 0; }
@@ -57,16 +59,28 @@ class OwnForces final : public System {
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   bool stiffness_is_constant() const override { return is_linear_; }
+  bool is_conservative() const override { return damping_.is_none(); }
+
+  const Damping* damping() const override { return damping_.is_none() ? nullptr : this; }
+  void friction(const At& at, MutableVec f) const override;
+  void damping_matrix(const At& at, SymmetricMatrix& c) const override;
+  bool damping_is_constant() const override { return is_linear_; }
 
  private:
+  // f of positions alone.
+  void elastic_force(const At& at, MutableVec f) const;
+  // Fills a matrix with what the callable returns.
+  void fill(const py::object& callable, const char* what, const ConstVec& q,
+            SymmetricMatrix& matrix) const;
   // Calls the callable with a view of q, and `use` with its result.
   template <class Use>
   void call(const py::object& callable, const char* name, const ConstVec& q, const Use& use) const;
 
   Force force_;
   Potential potential_;
-  py::object stiffness_;
+  py::object stiffness_, damping_;
   SymmetricMatrix pattern_;
+  mutable SymmetricMatrix c_;  // scratch, guarded by the GIL
   bool is_linear_;
   mutable Views views_;
 };

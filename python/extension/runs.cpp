@@ -41,6 +41,7 @@ class Frames {
       energies_[seen_] = kinetic;
       energies_[seen_ + times_.size()] = potential;
       energies_[seen_ + 2 * times_.size()] = kinetic + potential;
+      energies_[seen_ + 3 * times_.size()] = model_.dissipated(state);
     }
     ++seen_;
   }
@@ -60,13 +61,14 @@ py::dict end_of(const Model& model, const State& state) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// The kinetic energy, the potential energy and their sum [J]; None for a system without V.
+// The kinetic energy, the potential energy, their sum and what damping has taken [J]; None for a
+// system without V.
 py::object energies_of(const Model& model, const State& state) {
   if (!model.system().has_potential()) return py::none();
   const double kinetic = model.kinetic(state);
   double potential = 0;
   inside_python([&] { potential = model.potential(state); });
-  return py::make_tuple(kinetic, potential, kinetic + potential);
+  return py::make_tuple(kinetic, potential, kinetic + potential, model.dissipated(state));
 }
 
 // A run of a method, which fills the arrays of Frames.

@@ -27,7 +27,7 @@ Eigen::MatrixXd matrix_of(const Doubles& array, const char* name) {
 Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles& mass,
                  const Doubles& stiffness, const Indices& pinned, const Given& gravity,
                  const Given& velocities, const Given& load, const Given& rest_length,
-                 const Given& quartic) {
+                 const Given& quartic, const Given& damping, double air_damping) {
   SceneArrays a;
   const auto node = [](std::int64_t number, const char* name) {
     if (number >= 0) return static_cast<std::size_t>(number);
@@ -50,6 +50,8 @@ Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles
   if (load) a.load = matrix_of(*load, "load");
   if (rest_length) a.rest_length = vec_of(*rest_length);
   if (quartic) a.quartic = vec_of(*quartic);
+  if (damping) a.damping = vec_of(*damping);
+  a.air_damping = air_damping;
   return scene_of(a);
 }
 
@@ -134,16 +136,18 @@ OwnForces::Potential potential_of(const py::object& given) {
 // without `stiffness`. `is_linear`: whether K is the same everywhere.
 HeldModel own_model(const Doubles& mass, const std::vector<py::ssize_t>& shape,
                     const py::object& force, const py::object& potential,
-                    const py::object& stiffness,
+                    const py::object& stiffness, const py::object& damping,
                     const std::optional<std::pair<Indices, Indices>>& pattern, double length,
                     const Doubles& q, const Doubles& v, int dimension, bool is_linear) {
   const Vec m = vec_of(mass);
   const bool computes = !stiffness.is_none();
   SymmetricMatrix own_pattern;
+  SymmetricMatrix of_damping;
   if (computes) own_pattern = pattern_of(pattern->first, pattern->second, m.size());
-  std::shared_ptr<const System> system =
-      std::make_shared<OwnForces>(m, shape, force_of(force), potential_of(potential), stiffness,
-                                  std::move(own_pattern), is_linear);
+  if (!damping.is_none()) of_damping = pattern_of(pattern->first, pattern->second, m.size());
+  std::shared_ptr<const System> system = std::make_shared<OwnForces>(
+      m, shape, force_of(force), potential_of(potential), stiffness, std::move(own_pattern),
+      is_linear, damping, std::move(of_damping));
   if (!computes && pattern) {
     std::vector<std::pair<Index, Index>> pairs;
     for (py::ssize_t a = 0; a < pattern->first.size(); ++a)
@@ -223,21 +227,22 @@ void add_scenes(py::module_& module) {
   scene.def_static("generate", [=](const std::string& name, const GeneratorValues& values) {
     return shared(generate(generator_named(name), values, name));
   });
-  scene.def_static("from_arrays",
-                   [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
-                       const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                       const Given& velocities, const Given& load, const Given& rest_length,
-                       const Given& quartic, const std::string& name, std::optional<double> until,
-                       std::optional<double> stiff_above, bool starts_at_equilibrium) {
-                     Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
-                                             velocities, load, rest_length, quartic);
-                     made.name = name;
-                     made.until = until;
-                     made.stiff_above = stiff_above;
-                     made.starts_at_equilibrium = starts_at_equilibrium;
-                     validate(made, name);
-                     return shared(std::move(made));
-                   });
+  scene.def_static(
+      "from_arrays", [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
+                         const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+                         const Given& velocities, const Given& load, const Given& rest_length,
+                         const Given& quartic, const Given& damping, double air_damping,
+                         const std::string& name, std::optional<double> until,
+                         std::optional<double> stiff_above, bool starts_at_equilibrium) {
+        Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity, velocities,
+                                load, rest_length, quartic, damping, air_damping);
+        made.name = name;
+        made.until = until;
+        made.stiff_above = stiff_above;
+        made.starts_at_equilibrium = starts_at_equilibrium;
+        validate(made, name);
+        return shared(std::move(made));
+      });
   // The scene as its motion starts: with its nodes at equilibrium if it starts there.
   scene.def("started", [=](const Shared& self) {
     return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;
@@ -248,6 +253,7 @@ void add_scenes(py::module_& module) {
   scene.def_readonly("dimension", &Scene::dimension);
   scene.def_readonly("until", &Scene::until);
   scene.def_readonly("stiff_above", &Scene::stiff_above);
+  scene.def_readonly("air_damping", &Scene::air_damping);
   scene.def_readonly("starts_at_equilibrium", &Scene::starts_at_equilibrium);
   scene.def_readonly("warnings", &Scene::warnings);
   const auto has = [&](const char* name, const auto& get) {
@@ -275,6 +281,7 @@ void add_scenes(py::module_& module) {
   of_springs("stiffness", &SpringLaw::stiffness);
   of_springs("rest_length", &SpringLaw::rest_length);
   of_springs("quartic", &SpringLaw::quartic);
+  of_springs("damping", &SpringLaw::damping);
   module.def("generators", &generator_records);
 }
 

@@ -32,6 +32,8 @@ class Scene:
         load: _Floats | None,
         rest_length: _Floats | None,
         quartic: _Floats | None,
+        damping: _Floats | None,
+        air_damping: float,
         name: str,
         until: float | None,
         stiff_above: float | None,
@@ -73,6 +75,10 @@ class Scene:
     def rest_length(self) -> _Floats: ...
     @property
     def quartic(self) -> _Floats: ...
+    @property
+    def damping(self) -> _Floats: ...
+    @property
+    def air_damping(self) -> float: ...
 
 class Model:
     @property
@@ -122,6 +128,7 @@ def own_model(
     force: Any,
     potential: Any,
     stiffness: Callable[[_Floats], Any] | None,
+    damping: Callable[[_Floats], Any] | None,
     pattern: tuple[_Whole, _Whole] | None,
     length: float,
     q: _Floats,

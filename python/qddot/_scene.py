@@ -83,8 +83,10 @@ class Scene:
     """A network of masses and springs, immutable.
 
     positions: (nodes, dimension) [m], dimension 1, 2 or 3. springs: (springs, 2), the nodes of
-    each, from 0. stiffness [N/m], rest_length [m] (default: as drawn) and quartic [N/m^3] (default:
-    none): of each spring, or one for all. mass [kg]: of each node, or one for all; 0 is massless.
+    each, from 0. stiffness [N/m], rest_length [m] (default: as drawn), quartic [N/m^3] and damping
+    [N s/m], of a dashpot along it (defaults: none): of each spring, or one for all. air_damping
+    [1/s]: alpha of the air's force -alpha m v on each node. mass [kg]: of each node, or one for
+    all; 0 is massless.
     pinned: the fixed nodes, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
     positions [m/s]. load: constant forces on the nodes, as positions [N]. until [s]: the default
     end time of runs. stiff_above [N/m]: stiffer springs are the stiff ones for methods that
@@ -111,6 +113,8 @@ class Scene:
         load: ArrayLike | None = None,
         rest_length: ArrayLike | None = None,
         quartic: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        air_damping: float = 0,
         name: str = "scene",
         until: float | None = None,
         stiff_above: float | None = None,
@@ -148,6 +152,8 @@ class Scene:
                 None if load is None else floats(load, "load"),
                 None if rest_length is None else floats(rest_length, "rest_length", one=True),
                 None if quartic is None else floats(quartic, "quartic", one=True),
+                None if damping is None else floats(damping, "damping", one=True),
+                number(air_damping, "air_damping"),
                 str(name),
                 None if until is None else number(until, "until"),
                 None if stiff_above is None else number(stiff_above, "stiff_above"),
@@ -197,6 +203,8 @@ class Scene:
         loads: Sequence[tuple[Chosen, Sequence[float]]] = (),
         gravity: Sequence[float] | None = None,
         until: float | None = None,
+        damping_time: float | None = None,
+        air_damping: float | None = None,
     ) -> Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh, .ply, .stl): every edge is a spring at
         its rest length. Masses come from node_mass or total_mass [kg], or from density: [kg/m^3] of
@@ -204,7 +212,8 @@ class Scene:
         become one. `rotation`: the axis to turn about, with the angle in degrees as its length;
         then `shift` [m] is added. `velocity` [m/s]: of all nodes at the start. `pins`: the nodes
         that are fixed, each entry a box (min, max), the name or tag of a group, or an array of
-        nodes. `loads`: pairs of such nodes and the force on each of them [N]."""
+        nodes. `loads`: pairs of such nodes and the force on each of them [N]. `damping_time` [s]:
+        that of a dashpot along each edge, over the edge's stiffness; `air_damping` [1/s]."""
         path = os.path.abspath(os.fspath(file))
         stem = os.path.splitext(os.path.basename(path))[0]
         lines = [f"name = {_quoted(stem)}"]
@@ -221,6 +230,8 @@ class Scene:
             bending_stiffness=bending_stiffness,
             scale=scale,
             weld=weld,
+            damping_time=damping_time,
+            air_damping=air_damping,
         )
         lines += [f"{name} = {float(x)!r}" for name, x in numbers.items() if x is not None]
         vectors = dict(rotation=rotation, shift=shift, velocity=velocity)
@@ -252,12 +263,14 @@ class Scene:
     stiffness: Floats = _of_handle("stiffness", "(springs) [N/m].")
     rest_length: Floats = _of_handle("rest_length", "(springs) [m].")
     quartic: Floats = _of_handle("quartic", "(springs) [N/m^3].")
+    damping: Floats = _of_handle("damping", "(springs), of their dashpots [N s/m].")
+    air_damping: float = _of_handle("air_damping", "alpha of the force -alpha m v [1/s].")
 
     def replace(self, **changes: Any) -> Scene:
         """The same scene with these arguments of Scene() replaced."""
         names = (
             "positions springs stiffness mass pinned gravity velocities load rest_length quartic "
-            "name until stiff_above starts_at_equilibrium"
+            "damping air_damping name until stiff_above starts_at_equilibrium"
         ).split()
         for name in changes:
             if name not in names:

@@ -29,9 +29,16 @@ FEW, DIRECTIONS = 100, 3
 AS_IT_IS = "(check=False takes it as it is)"
 
 
-def check(model: _qddot.Model, length: float, has_own_stiffness: bool, linear: bool) -> None:
+def check(
+    model: _qddot.Model,
+    length: float,
+    has_own_stiffness: bool,
+    linear: bool,
+    damping: Callable[[Floats], Any] | None,
+) -> None:
     """Compares f, V and K with each other's differences beside the start, where no symmetry hides
-    anything; and those of a linear system at some distance. `length` [m]: a small length there."""
+    anything; and those of a linear system at some distance. `length` [m]: a small length there. The
+    C of `damping` must be symmetric and take energy."""
     start = model.q
     f = model.force(start)
     if not np.all(np.isfinite(f)):
@@ -58,6 +65,8 @@ def check(model: _qddot.Model, length: float, has_own_stiffness: bool, linear: b
         _check_stiffness(model, x, u, d, has_own_stiffness)
         if linear:
             _check_linear(model, x, length * u)
+    if damping is not None:
+        _check_damping(damping(x), x.size, random)
 
 
 def _directions(n: int, random: np.random.Generator) -> Iterator[Floats]:
@@ -129,6 +138,30 @@ def _check_linear(model: _qddot.Model, x: Floats, step: Floats) -> None:
                 f"linear: K is not the same everywhere: over a step away from the start {what} by "
                 f"{other[i]:.6g} N instead of {k[i]:.6g} N {AS_IT_IS}"
             )
+
+
+def _check_damping(given: Any, n: int, random: np.random.Generator) -> None:
+    c = given.toarray() if hasattr(given, "toarray") and n <= FEW else given
+    if not hasattr(c, "tocsc"):
+        c = np.asarray(c, dtype=np.float64)
+    difference, largest = abs(c - c.T).max(), abs(c).max()
+    if not difference <= TOLERANCE * largest:
+        raise ValueError(
+            f"damping: beside the start C is not symmetric: two entries differ by {difference:.6g} "
+            f"N s/m {AS_IT_IS}"
+        )
+    for u in random.uniform(-1, 1, (20 if n > FEW else 0, n)):
+        _require_loss(float(u @ (c @ u)) / float(u @ u), largest)
+    if n <= FEW:
+        _require_loss(float(np.linalg.eigvalsh(c)[0]), largest)
+
+
+def _require_loss(least: float, largest: float) -> None:
+    if not least >= -TOLERANCE * largest:
+        raise ValueError(
+            f"damping: beside the start C has the eigenvalue {least:.6g} N s/m or less, so that it "
+            f"adds energy; the force is -C v {AS_IT_IS}"
+        )
 
 
 def _times(model: _qddot.Model, x: Floats, u: Floats) -> Floats:
@@ -236,7 +269,10 @@ class System:
     What you give decides what you can use:
     - force: explicit methods,
     - potential: energies, and a line search in implicit methods,
-    - stiffness or `pattern`: implicit methods, SUNDIALS', references, answers to an accuracy.
+    - stiffness or `pattern`: implicit methods, SUNDIALS', references, answers to an accuracy,
+    - damping(q), beside one of these: C [N s/m], like K in form and with no entry that K has not,
+      symmetric and positive semidefinite. The force is then f - C v, and energies have the part
+      that it takes. A matrix itself is the same everywhere, as it must be in a linear system.
     A pattern has the nonzeros of K, which then is made of differences of f: a sparse or dense
     matrix of n x n unknowns or of nodes x nodes, pairs (m, 2) of unknowns, or "dense".
     `linear` says that K is the same everywhere: it is then made once, and the method `exact` knows
@@ -245,8 +281,9 @@ class System:
     `length` [m]: a small length of the motion, for these differences; default: the extent of the
     start. `check`: whether the system is checked beside its first start: f must be finite and equal
     -dV/dq or, without V, have a symmetric df/dq, K must agree with differences of f, and a linear
-    f must be so. `name`: its name in charts, files and messages. Forces that depend on the velocity
-    or on time are not modelled: a force that takes them is refused.
+    f must be so; C must be symmetric and take energy. `name`: its name in charts, files and
+    messages. Other forces that depend on the velocity or on time are not modelled: a force that
+    takes them is refused.
     """
 
     @knows_its_arguments
@@ -258,6 +295,7 @@ class System:
         stiffness: Any = None,
         pattern: Any = None,
         *,
+        damping: Any = None,
         dimension: int | None = None,
         length: float | None = None,
         check: bool = True,
@@ -289,7 +327,7 @@ class System:
         self._linear = bool(linear)
         self._stiffness: Callable[[Floats], Any] | None = None
         if stiffness is not None and _is_matrix(stiffness):
-            constant = self._constant(stiffness)
+            constant = self._constant(stiffness, "stiffness")
             self._stiffness, self._linear = lambda q: constant, True
         elif stiffness is not None and not callable(stiffness):
             raise ValueError("stiffness: it is neither a callable nor a matrix")
@@ -300,6 +338,21 @@ class System:
             raise ValueError(
                 "linear: the System has no K; give it its stiffness, or a pattern of it"
             )
+        self._damping: Callable[[Floats], Any] | None = None
+        if damping is not None and stiffness is None and pattern is None:
+            raise ValueError(
+                "damping: C has the pattern of K; give the System its stiffness, or a pattern of it"
+            )
+        if damping is not None and _is_matrix(damping):
+            constant_damping = self._constant(damping, "damping")
+            self._damping = lambda q: constant_damping
+        elif damping is not None:
+            require_arguments(damping, "damping", 1)
+            if self._linear:
+                raise ValueError(
+                    "damping: of a linear system C is the same everywhere; allowed is a matrix"
+                )
+            self._damping = damping
         self._kept_alive = (force, potential)
         self._pattern: Pattern | None = None if pattern is None else self._pairs(pattern)
         self._must_check = check
@@ -340,16 +393,16 @@ class System:
         """Whether K is computed, or made of differences."""
         return self._stiffness is not None or self._pattern is not None
 
-    def _constant(self, matrix: Any) -> Any:
-        """A copy of a constant K. Raises ValueError if it is not n x n, finite and symmetric."""
+    def _constant(self, matrix: Any, name: str) -> Any:
+        """A copy of a constant K or C. Raises ValueError if it is not n x n, finite and symmetric."""
         n = self.mass.size
-        k = matrix.tocsc() if hasattr(matrix, "tocsc") else floats(matrix, "stiffness")
+        k = matrix.tocsc() if hasattr(matrix, "tocsc") else floats(matrix, name)
         if k.shape != (n, n):
-            raise ValueError(f"stiffness: its shape is {k.shape}; allowed is {(n, n)}")
+            raise ValueError(f"{name}: its shape is {k.shape}; allowed is {(n, n)}")
         if not np.all(np.isfinite(k.data if hasattr(k, "tocsc") else k)):
-            raise ValueError("stiffness: some of its entries are not finite")
+            raise ValueError(f"{name}: some of its entries are not finite")
         if abs(k - k.T).max() > ROUNDING * abs(k).max():
-            raise ValueError("stiffness: it is not symmetric, as the K of a potential is")
+            raise ValueError(f"{name}: it is not symmetric")
         return k.copy()
 
     def _pairs(self, pattern: Any) -> Pattern:
@@ -398,10 +451,17 @@ class System:
         )
 
     def _columns(self, q: Floats) -> Any:
-        """K in the form that the extension takes: dense, or (data, indices, indptr) of its sorted
-        columns."""
         assert self._stiffness is not None
-        k = self._stiffness(q)
+        return self._in_columns(self._stiffness(q), q, "stiffness")
+
+    def _damping_columns(self, q: Floats) -> Any:
+        assert self._damping is not None
+        return self._in_columns(self._damping(q), q, "damping")
+
+    @staticmethod
+    def _in_columns(k: Any, q: Floats, name: str) -> Any:
+        """K or C in the form that the extension takes: dense, or (data, indices, indptr) of its
+        sorted columns."""
         if not hasattr(k, "tocsc"):
             return np.asarray(k, dtype=np.float64)
         # Rows serve as columns, as K is symmetric. The caller's own matrix is not changed.
@@ -412,7 +472,7 @@ class System:
             k.sum_duplicates()
         if k.shape != (q.size, q.size):
             raise ValueError(
-                f"stiffness: it returned {k.shape[0]} x {k.shape[1]} numbers; allowed "
+                f"{name}: it returned {k.shape[0]} x {k.shape[1]} numbers; allowed "
                 f"is {q.size} x {q.size}"
             )
         return k.data, k.indices, k.indptr
@@ -427,7 +487,9 @@ class System:
             self._pattern = self._pattern_near(q)
         model = self._made(q, v)
         if self._must_check:
-            check(model, self._length, self._stiffness is not None, self._linear)
+            check(
+                model, self._length, self._stiffness is not None, self._linear, self._damping
+            )
             self._must_check = False
         return model
 
@@ -439,6 +501,7 @@ class System:
             self._force,
             self._potential,
             None if self._stiffness is None else self._columns,
+            None if self._damping is None else self._damping_columns,
             self._pattern,
             self._length,
             q.reshape(-1),
@@ -478,6 +541,7 @@ class System:
         offered += ["potential"] if self.has_potential else []
         offered += ["stiffness"] if self._stiffness is not None else []
         offered += ["pattern"] if self._stiffness is None and self.has_stiffness else []
+        offered += ["damping"] if self._damping is not None else []
         kind = ", linear" if self.linear else ""
         return (
             f"<qddot.System {self.name!r}: {self.mass.size} unknowns{kind}; {', '.join(offered)}>"

@@ -27,14 +27,14 @@ struct Tally {
 };
 
 int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, std::uint64_t methods_every,
-         const std::string& only) {
+         const std::string& only, bool is_damped) {
   const auto start = std::chrono::steady_clock::now();
   std::map<std::string, Tally> kinds;
   Comparisons all;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     if (seconds > 0 && spent.count() > seconds) break;
-    const auto [scene, kind] = random_scene(seed + i);
+    const auto [scene, kind] = is_damped ? damped_scene(seed + i) : random_scene(seed + i);
     if (!only.empty() && kind != only) continue;
     Comparisons own = compare_states(scene, seed + i);
     const DrawnMotion motion(scene);
@@ -75,6 +75,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   std::string only;
   app.add_option("--kind", only, "only scenes of this kind, as coincident or massless");
+  bool is_damped = false;
+  app.add_flag("--damped", is_damped, "the same scenes with dashpots and air");
   CLI11_PARSE(app, argc, argv);
-  return qddot::fuzz(count, seed, seconds, methods_every, only);
+  return qddot::fuzz(count, seed, seconds, methods_every, only, is_damped);
 }

@@ -31,11 +31,14 @@ class DrawnMotion {
   double floor() const { return floor_; }
   // The same difference between two ends.
   double difference(const std::vector<Node>& a, const std::vector<Node>& b) const;
+  // The energy that damping has taken by the end [J], and the size of energies there.
+  double dissipated() const { return static_cast<double>(end_.state().dissipated); }
+  double energy_size() const { return energy_size_; }
 
  private:
   Scene scene_;
   PlainMotion<long double> end_;
-  double known_until_ = 0, displacement_ = 0, speed_ = 0, floor_ = 0;
+  double known_until_ = 0, displacement_ = 0, speed_ = 0, floor_ = 0, energy_size_ = 0;
 };
 
 // The quantities that are compared with the drawn scene, and the number of comparisons.

@@ -382,5 +382,30 @@ RandomScene random_scene(std::uint64_t seed) {
   return random;
 }
 
+RandomScene damped_scene(std::uint64_t seed) {
+  RandomScene random = random_scene(seed);
+  Scene& scene = random.scene;
+  Chance chance(seed ^ 0x5bd1e995);
+  const std::size_t kind = chance.below(4);
+  if (kind == 3 || chance.is(0.4)) scene.air_damping = chance.decades(-1, 0.7);
+  // Damping ratios of the fastest vibration from some hundredths to some.
+  const double time = *scene.until * chance.decades(-3.5, -1.5);
+  std::vector<double> stiffnesses = {0};
+  for (const Spring& spring : scene.springs) stiffnesses.push_back(spring.law.stiffness);
+  const double least = stiffnesses[chance.below(stiffnesses.size())];
+  for (Spring& spring : scene.springs) {
+    const bool is_held = std::ranges::all_of(spring.nodes, [&](std::size_t i) {
+      return scene.nodes[i].pinned || scene.nodes[i].mass > 0;
+    });
+    double& c = spring.law.damping;
+    c = kind == 0 || (kind == 1 && spring.law.stiffness >= least) ? time * spring.law.stiffness
+        : kind == 2 && chance.is(0.6)                             ? time * chance.decades(1, 3)
+                                                                  : 0;
+    if (!is_held) c = 0;
+  }
+  validate(scene, "damped");
+  return random;
+}
+
 }  // namespace tests
 }  // namespace qddot

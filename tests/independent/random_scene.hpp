@@ -26,5 +26,9 @@ struct RandomScene {
 // Loads act on some nodes of many of them.
 RandomScene random_scene(std::uint64_t seed);
 
+// The same scene with dashpots, air or both: in proportion to stiffness, on springs of some
+// stiffnesses, so that symmetries stay, or on any. No dashpot is at a massless node.
+RandomScene damped_scene(std::uint64_t seed);
+
 }  // namespace tests
 }  // namespace qddot

@@ -8,7 +8,7 @@ inline namespace tests {
 
 // The larger modulus of the eigenvalues of the matrix of one step on q'' = -q.
 inline double growth_a_step(const Method& method, double h) {
-  if (method.recurrence_roots) return std::abs(method.recurrence_roots(h).front());
+  if (method.recurrence_roots) return std::abs(method.recurrence_roots(h, 0).front());
   static const auto system =
       make_mass_spring(Oscillator{.mass = 1, .stiffness = 1}.problem().network);
   Eigen::Matrix2d matrix;

@@ -15,19 +15,16 @@ namespace {
 // The capabilities of a system.
 struct Offers {
   bool stiffness = false, split_stiffness = false, discrete_gradient = false, laplacian = false,
-       pieces = false, validity = false, kinks = false, blocks = false, split = false;
+       pieces = false, validity = false, kinks = false, damping = false, blocks = false,
+       split = false;
   bool operator==(const Offers&) const = default;
 };
 Offers offers_of(const System& s) {
-  return {s.has_stiffness(),
-          s.split_stiffness() != nullptr,
-          s.discrete_gradient() != nullptr,
-          s.laplacian() != nullptr,
-          s.pieces() != nullptr,
-          s.validity() != nullptr,
-          s.kinks() != nullptr,
-          !s.blocks().empty(),
-          s.split() != nullptr};
+  return {
+      s.has_stiffness(),        s.split_stiffness() != nullptr, s.discrete_gradient() != nullptr,
+      s.laplacian() != nullptr, s.pieces() != nullptr,          s.validity() != nullptr,
+      s.kinks() != nullptr,     s.damping() != nullptr,         !s.blocks().empty(),
+      s.split() != nullptr};
 }
 
 // A mass on a spring of V = q^2/2, by V and f alone.
@@ -58,6 +55,11 @@ class Offering final : public CapableSystem {
   const PiecewiseLinear* pieces() const override { return offers_.pieces ? this : nullptr; }
   const Validity* validity() const override { return offers_.validity ? this : nullptr; }
   const Kinks* kinks() const override { return offers_.kinks ? this : nullptr; }
+  const Damping* damping() const override { return offers_.damping ? this : nullptr; }
+  bool is_conservative() const override { return !offers_.damping; }
+  void friction(const At& at, MutableVec f) const override { f = -at.v; }
+  void damping_matrix(const At&, SymmetricMatrix& c) const override { c.coeffs()[0] = 1; }
+  bool damping_is_constant() const override { return true; }
   const Split* split() const override { return offers_.split ? &split_ : nullptr; }
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }
   void stiffness(const At&, SymmetricMatrix& k) const override { k.coeffs()[0] = -1; }
@@ -89,6 +91,7 @@ constexpr Offers each[] = {{},
                            {.pieces = true},
                            {.validity = true},
                            {.kinks = true},
+                           {.stiffness = true, .damping = true},
                            {.split = true}};
 
 // Systems that offer these, and networks.
@@ -180,6 +183,7 @@ BOOST_AUTO_TEST_CASE(blocks_offer_together_what_all_of_them_offer_and_exceptions
                             .pieces = a.pieces || b.pieces,
                             .validity = a.validity || b.validity,
                             .kinks = a.kinks || b.kinks,
+                            .damping = a.damping || b.damping,
                             .blocks = true,
                             .split = false};
       BOOST_TEST((offers_of(both) == expected));

@@ -25,6 +25,7 @@ inline std::string first_difference(const Scene& a, const Scene& b) {
   if (a.until && !same_bits(*a.until, *b.until)) return "until";
   if (a.stiff_above.has_value() != b.stiff_above.has_value()) return "stiff_above";
   if (a.stiff_above && !same_bits(*a.stiff_above, *b.stiff_above)) return "stiff_above";
+  if (!same_bits(a.air_damping, b.air_damping)) return "air_damping";
   if (a.starts_at_equilibrium != b.starts_at_equilibrium) return "start";
   if (a.nodes.size() != b.nodes.size()) return "nodes";
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {
@@ -42,6 +43,7 @@ inline std::string first_difference(const Scene& a, const Scene& b) {
     if (!same_bits(s.law.stiffness, t.law.stiffness)) return "stiffness";
     if (!same_bits(s.law.rest_length, t.law.rest_length)) return "rest_length";
     if (!same_bits(s.law.quartic, t.law.quartic)) return "quartic";
+    if (!same_bits(s.law.damping, t.law.damping)) return "damping";
   }
   return content_hash(a) == content_hash(b) ? "" : "hash";
 }

@@ -48,7 +48,7 @@ ModeResponse by_formula(double gamma, double square, double t) {
     const double slowly = std::exp(-slow * t), quickly = std::exp(-fast * t);
     s = -slowly * std::expm1(-2 * m * t) / (2 * m);
     c = (fast * quickly - slow * slowly) / (2 * m);
-    if (std::abs(square) * t * t < small / 4) {
+    if (std::abs(slow) * t < small / 2) {  // 1 - c - 2 gamma s would cancel
       const auto decayed = [t](double rate) {
         return rate == 0 ? t : -std::expm1(-rate * t) / rate;
       };

@@ -98,6 +98,7 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
     summary.energy_growth = energy.growth;
     summary.energy_lost = energy.lost;
     summary.energy_loss = energy.loss();
+    summary.dissipated = state.dissipated - dissipated_;
   }
   if (outcome == Outcome::reached_end) return summary;
   const bool says_part = message_.empty() && has_begun_ && is_whole();

@@ -25,6 +25,8 @@ struct Summary {
   // The energy [J] that was lost by the end of the run, and that part of the energy which its
   // motion can turn into speed (EnergyChange); zero if none was lost.
   double energy_lost = 0, energy_loss = 0;
+  // The energy [J] that damping took in the run; that is no loss of the method.
+  double dissipated = 0;
 };
 
 // Observes a run: `see` is called at each of `times` [s] (ascending, after the start, at most

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <limits>
 #include <memory>
@@ -75,9 +76,13 @@ struct Method {
   // The largest h w at which the motion q'' = -w^2 q does not grow, by theory; 0 if it grows at
   // every h. Given for explicit fixed-step methods only (see linear_limit below).
   std::optional<double> stability_limit{};
-  // The roots, at h w, of the recurrence of positions on q'' = -w^2 q, the deciding one first.
-  // Given for methods whose steps depend on more earlier steps than a run shows.
-  std::vector<std::complex<double>> (*recurrence_roots)(double h_omega) = nullptr;
+  // The number of half steps by which friction of a leapfrog method is late; 0 for other methods.
+  // With it a vibration q'' = -w^2 q - 2 zeta w q' does not grow up to the limit below.
+  double friction_lag = 0;
+  // The roots, at h w, of the recurrence of positions on such a vibration, the deciding one first;
+  // zeta is 0 unless the method takes dashpots. Given for methods whose steps depend on more
+  // earlier steps than a run shows.
+  std::vector<std::complex<double>> (*recurrence_roots)(double h_omega, double zeta) = nullptr;
   // Whether a step solves linear equations, for the unknowns with stiff forces alone if a scene
   // names stiff springs.
   bool solves_stiff_part = false;
@@ -114,6 +119,15 @@ struct Method {
 // no limit or none is known.
 inline double linear_limit(const Method& method) {
   return method.stability_limit.value_or(std::numeric_limits<double>::infinity());
+}
+
+// The same with the damping ratio zeta, of a leapfrog method: 4 - 4 lag zeta h w - (h w)^2 = 0.
+// NaN for other methods, unless zeta is 0.
+inline double damped_limit(const Method& method, double zeta) {
+  if (zeta == 0) return linear_limit(method);
+  if (method.friction_lag == 0) return std::numeric_limits<double>::quiet_NaN();
+  const double late = method.friction_lag * zeta;
+  return 2 / (std::sqrt(1 + late * late) + late);
 }
 
 // Whether the forces are divided into stiff and soft ones, in each block that has unknowns.

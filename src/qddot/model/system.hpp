@@ -172,10 +172,10 @@ inline void require_stiffness(const System& system) {
   }
 }
 
-// Throws std::invalid_argument if forces depend on time or velocities, so that the energy is no
-// constant of the motion.
+// Throws std::invalid_argument if forces depend on time, or on velocities by other ways than
+// Damping, so that the energy and what damping has taken are no constant of the motion.
 inline void require_constant_energy(const System& system) {
-  if (!system.is_conservative() || !system.is_autonomous()) {
+  if ((!system.is_conservative() && !system.damping()) || !system.is_autonomous()) {
     throw std::invalid_argument(
         "the forces depend on time or velocities, and this takes the energy for a constant: run "
         "the system by one method at two steps or tolerances, and compare");

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "qddot/analysis/curvature_signs.hpp"
+#include "qddot/analysis/damped_step.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/analysis/natural_modes.hpp"
 
@@ -29,6 +31,50 @@ void find_fastest(Explanation& explanation, const Model& all) {
     // The equilibrium stays unknown, for loose massless nodes or an iteration that does not
     // converge.
   }
+}
+
+// Sets the damping ratios of the lowest and the highest mode. Modes below this part of the highest
+// frequency count as motions that nothing resists.
+void find_damping(Explanation& e, const System& system, const Vec& q) {
+  constexpr double least_part = 1e-6;
+  constexpr Index most_flat = 12;
+  e.zeta_lowest = e.zeta_highest = std::numeric_limits<double>::quiet_NaN();
+  Vec friction(q.size());
+  const auto ratio = [&](const NaturalModes& modes, Index mode) {
+    const Vec shape = modes.shapes.col(mode);
+    system.damping()->friction({0, q, shape}, friction);
+    return -shape.dot(friction) / (2 * std::sqrt(modes.squares[mode]));
+  };
+  try {
+    const NaturalModes highest = highest_modes(system, q, 1);
+    if (highest.squares.size() == 0 || !(highest.squares[0] > 0)) return;
+    e.zeta_highest = ratio(highest, 0);
+    constexpr double lag_of_verlet = 2;
+    e.verlet_step = damped_step_limit(system, q, lag_of_verlet);
+    const NaturalModes lowest = lowest_modes(system, q, most_flat);
+    for (Index mode = 0; mode < lowest.squares.size(); ++mode) {
+      if (!(lowest.squares[mode] > least_part * least_part * highest.squares[0])) continue;
+      e.zeta_lowest = ratio(lowest, mode);
+      return;
+    }
+  } catch (const std::exception&) {
+    // They stay unknown, as for loose massless nodes.
+  }
+}
+
+std::string damping_sentence(const Explanation& e) {
+  const auto of = [](double zeta) {
+    return std::isnan(zeta) ? std::string("unknown") : fmt::format("{:.3g}", zeta);
+  };
+  std::string sentence = fmt::format(
+      "damping ratio {} of the lowest mode at the start, {} of the "
+      "highest",
+      of(e.zeta_lowest), of(e.zeta_highest));
+  if (e.verlet_step > 0) {
+    sentence += fmt::format("; verlet, whose friction is late, is stable up to h = {:.4g} s",
+                            e.verlet_step);
+  }
+  return sentence;
 }
 
 double lanczos(const System& system, const Vec& q) {
@@ -113,6 +159,9 @@ Explanation explain(const Scene& scene, const Model& model, const ExplanationLim
   e.omega_bound = frequency_bound(system, q);
   e.omega_max = e.drawn_unknowns <= limits.frequency ? lanczos(system, q)
                                                      : std::numeric_limits<double>::quiet_NaN();
+  e.is_damped = system.damping() != nullptr;
+  if (e.is_damped && e.drawn_unknowns <= std::min(limits.frequency, limits.examined))
+    find_damping(e, system, q);
   e.is_examined = e.drawn_unknowns <= limits.examined;
   if (!e.is_examined || e.unknowns == 0) return e;
   const Model all(scene, Reductions::all_directions());
@@ -145,6 +194,7 @@ std::string explanation_in_words(const Explanation& e, const Scene& scene) {
                               scene.springs.size(), *scene.stiff_above));
   }
   line("step", step_sentence(e));
+  if (e.is_damped) line("damping", damping_sentence(e));
   if (e.unknowns > 0) line("stability", stability_sentence(e, scene));
   if (e.unstable_left_out > 0) line("", left_out_sentence(e));
   return words;

@@ -19,6 +19,11 @@ struct Explanation {
   // These are for the start of the system that is left:
   double omega_bound = 0;  // upper bound of w_max [rad/s], by Gershgorin; infinite without mass
   double omega_max = 0;    // by Lanczos, to about 1e-4; NaN if it was not found
+  bool is_damped = false;
+  // Damping ratios x'Cx/(2 w) of the lowest mode x that vibrates and of the highest; NaN if they
+  // were not found. Above 1 a mode creeps.
+  double zeta_lowest = 0, zeta_highest = 0;
+  double verlet_step = 0;  // the largest stable step of verlet with this damping [s]; 0 if unknown
   // These are for the start, in all directions in which the nodes may move:
   int unstable = 0;           // directions in which V falls: K is indefinite if there are any
   int flat = 0;               // directions in which V is flat within rounding (see CurvatureSigns),

@@ -16,6 +16,7 @@
   GENERATOR(pair)                   \
   GENERATOR(pendulum)               \
   GENERATOR(chain)                  \
+  GENERATOR(plucked_string)         \
   GENERATOR(cloth)                  \
   GENERATOR(framed_cloth)           \
   GENERATOR(lattice)                \

@@ -138,16 +138,14 @@ double Model::potential(const State& state) const {
 }
 
 double Model::energy(const State& state) const {
-  double energy = total_energy(*pieces_->system, state) + pieces_->static_energy;
+  double energy = total_energy(*pieces_->system, state) + state.dissipated + pieces_->static_energy;
   for (const reduce::Flying& flying : pieces_->flying) {
     const Node& node = pieces_->nodes[flying.node];
-    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - flying.gravity.dot(node.position) -
-                           flying.dissipated(state.t));
+    energy += node.mass * (0.5 * flying.velocity.squaredNorm() - flying.gravity.dot(node.position));
   }
   for_falling(pieces_->parts, state, [&](const Fall& fall, const Part::Moments& moments) {
     energy += moments.momentum.dot(fall.velocity_at(state.t)) +
-              0.5 * fall.mass * fall.velocity.squaredNorm() - fall.gravity.dot(moments.first) -
-              fall.mass * fall.dissipated(state.t);
+              0.5 * fall.mass * fall.velocity.squaredNorm() - fall.gravity.dot(moments.first);
   });
   return energy;
 }

@@ -68,11 +68,12 @@ class Model {
   // Energies [J] of all nodes and springs of the scene; weights of pinned nodes do not count.
   double kinetic(const State& state) const;
   double potential(const State& state) const;
-  // The sum of both [J], without the rounding of terms that cancel if something falls.
-  double energy(const State& state) const;
   // The energy that dashpots and air have taken up to state.t [J]: state.dissipated, and that of
-  // motions in closed form. What is left is energy(state).
+  // motions in closed form.
   double dissipated(const State& state) const;
+  // The sum of all three [J], which an exact motion keeps, without the rounding of terms that
+  // cancel if something falls.
+  double energy(const State& state) const;
 
   // Massless nodes that have unknowns, ascending: most methods cannot run them.
   std::vector<std::size_t> massless_nodes() const;

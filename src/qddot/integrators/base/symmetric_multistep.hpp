@@ -69,7 +69,7 @@ class SymmetricMultistep final : public Formula {
 std::unique_ptr<Stepper> create_symmetric(SystemRun& run);
 // The roots of a formula; for Method::recurrence_roots.
 template <const SymmetricFormula& (*formula)()>
-std::vector<std::complex<double>> symmetric_roots(double h_omega) {
+std::vector<std::complex<double>> symmetric_roots(double h_omega, double /*zeta*/) {
   return roots_of(formula(), h_omega);
 }
 

@@ -59,11 +59,16 @@ Momenta::Momenta(const Scene& scene) : gravity_(scene.gravity) {
     load_ += load;
   }
   if (!box.isEmpty() && box.diagonal().norm() > 0) extent_ = box.diagonal().norm();
+  if (scene.air_damping > 0) return;
   if (!pins.empty()) pin_ = pins.front(), pulls.push_back(gravity_);
   if (pins.empty()) {
     linear_axes_.assign(all_axes().begin(), all_axes().begin() + scene.dimension);
   }
   if (scene.dimension == 1) return;  // nothing turns
+  const bool turns = std::ranges::any_of(scene.springs, [](const Spring& spring) {
+    return spring.law.damping > 0 && spring.law.rest_length == 0;
+  });
+  if (turns) return;
   angular_axes_ = turning_axes(pins, pulls);
   if (scene.dimension == 2) {
     std::erase_if(angular_axes_, [](const Vector3d& axis) { return axis.z() == 0; });

@@ -14,7 +14,8 @@ namespace qddot::inline measure {
 //   pins on one line:   L along the line, if it is parallel to g or there is no gravity;
 //   else:               none.
 // Loads act on L as gravity does, and also where nothing is pinned: only a component along all of
-// them is kept.
+// them is kept. Air takes all of both. Dashpots of springs with rest lengths take none; one of a
+// spring without acts in all directions and takes L.
 class Momenta {
  public:
   explicit Momenta(const Scene& scene);

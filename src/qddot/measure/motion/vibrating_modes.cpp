@@ -42,7 +42,9 @@ std::vector<Mode> spread(std::vector<Mode> all, int count) {
 
 }  // namespace
 
-std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count) {
+namespace {
+
+std::vector<Mode> undamped_modes(const System& system, const Vec& q, int count) {
   const Index finite = finite_modes(system);
   if (finite == 0 || count == 0) return {};
   std::vector<Mode> modes;
@@ -55,6 +57,20 @@ std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count) {
   const NaturalModes high = highest_modes(system, q, half), low = lowest_modes(system, q, half);
   append(modes, low, 0, largest_omega(high));
   append(modes, high, finite - half, largest_omega(high));
+  return modes;
+}
+
+}  // namespace
+
+std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count) {
+  std::vector<Mode> modes = undamped_modes(system, q, count);
+  if (const Damping* damping = system.damping()) {
+    Vec friction(q.size());
+    for (Mode& mode : modes) {
+      damping->friction({0, q, mode.shape}, friction);
+      mode.zeta = -mode.shape.dot(friction) / (2 * mode.omega);
+    }
+  }
   return modes;
 }
 

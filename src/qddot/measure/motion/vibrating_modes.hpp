@@ -9,10 +9,11 @@ namespace qddot::inline measure {
 
 // A natural mode of a scene: it vibrates as x cos(w t).
 struct Mode {
-  int rank;      // from 1, the lowest
-  double omega;  // w [rad/s], > 0
-  double part;   // w / w_max
-  Vec shape;     // x, x'Mx = 1 (x in kg^-1/2)
+  int rank;         // from 1, the lowest
+  double omega;     // w [rad/s], > 0
+  double part;      // w / w_max
+  Vec shape;        // x, x'Mx = 1 (x in kg^-1/2)
+  double zeta = 0;  // x'Cx/(2 w), the mode's own damping ratio; zero without Damping
 };
 
 // Up to `count` of the modes that vibrate about q, in ascending order, with the lowest and the

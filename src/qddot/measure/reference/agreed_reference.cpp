@@ -71,13 +71,14 @@ Reference agreed_reference(const Model& scene, double until, double needed, doub
   // Verlet runs first, and the other times are estimated from its time. Kahan and Li's composition
   // evaluates 17 forces a step. Fehlberg's pair evaluates 13, and its steps are no longer than
   // three of Verlet's. The time of the implicit method is a guess.
+  const char* const of_order_8 = resolving_method(scene.system()).name.c_str();
   Way verlet{true, 0, 2, explicitly("verlet", 1)};
   const auto begin = clock_now();
   verlet.finest = verlet.solve(verlet.level++, seconds);
   const double unit = seconds_since(begin);
   verlet.expected = verlet.growth * unit;
   if (verlet.finest) scales = verlet.finest->scales;
-  std::array<Way, 4> ways = {verlet, Way{true, 17.0 / 2 * unit, 2, explicitly("kahan_li8", 2)},
+  std::array<Way, 4> ways = {verlet, Way{true, 17.0 / 2 * unit, 2, explicitly(of_order_8, 2)},
                              Way{false, 13.0 / 3 * unit, 1.4, by_fehlberg},
                              Way{false, 2 * unit, 1.6, by_ida}};
 

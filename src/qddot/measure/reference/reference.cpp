@@ -33,7 +33,7 @@ void require_affordable(const Model& scene, double until, double steps, double s
         "resolves it: ask for larger masses or softer springs");
   }
   const auto integrator =
-      make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = h});
+      make_integrator(resolving_method(scene.system()), scene.system(), {.step_size = h});
   const auto begin = clock_now();
   const Deadline deadline(seconds);
   integrator->advance(state, tried * h, {}, deadline.token());
@@ -108,10 +108,16 @@ Reference make_reference(const Model& scene, double until, double seconds, const
   const Solution& finest = composed.finest();
   const Errors& effect = composed.rounding().effect();
   Reference reference;
-  if (scene.system().stiffness_is_constant() && scene.system().size() <= largest_modal_size) {
-    const Solution modal{.end = LinearMotion(scene.system()).after(scene.initial(), until),
-                         .scales = finest.scales,
-                         .made_by = "modal, exact"};
+  if (scene.system().stiffness_is_constant() && LinearMotion::has_modes(scene.system()) &&
+      scene.system().size() <= largest_modal_size) {
+    Solution modal{.end = LinearMotion(scene.system()).after(scene.initial(), until),
+                   .scales = finest.scales,
+                   .made_by = "modal, exact"};
+    if (scene.system().damping()) {
+      // What the exact motion has lost is what damping has taken.
+      modal.end.dissipated =
+          total_energy(scene.system(), scene.initial()) - total_energy(scene.system(), modal.end);
+    }
     reference = joined(scene, modal, finest, effect);
   } else {
     reference = joined(scene, finest, best_fehlberg(scene, until, composed, 0.4 * seconds), effect);

@@ -38,7 +38,7 @@ struct OutOfSymmetry {
 // errors mean nothing. The program fuzz_references shows how often the bound holds.
 struct Reference {
   State end;
-  double energy = 0;  // E(0) [J], which the exact motion keeps
+  double energy = 0;  // E(0) [J], which the exact motion keeps with what damping takes
   Scales scales;
   Errors certified;
   // The effect of one rounding of the start on the positions at the end, as a position error. Then
@@ -60,7 +60,7 @@ struct Reference {
   Vec modal_shares{};
   double modal_shares_floor = 0;
   std::string made_by;  // the two methods, with their options
-  // The steps [s] of Kahan and Li's composition in it; 0 if it has none.
+  // The steps [s] of the method of fixed steps in it; 0 if it has none.
   double step_size = 0;
   double seconds = 0;  // time to make it [s]
 
@@ -84,7 +84,8 @@ using Expect = std::function<void(double seconds)>;
 // methods:
 //   linear motion (constant K):  modal, exact  -  Kahan and Li's order-8 composition;
 //   else:  Kahan and Li's composition (symplectic, fixed step)  -  Fehlberg's 7(8) pair of
-//          Boost.odeint (adaptive).
+//          Boost.odeint (adaptive);
+//   with dashpots, Prince and Dormand's order 8 (fixed step) is in the composition's place.
 // Each is refined until only rounding changes the result, or until time is up. `start` is the scene
 // that `scene` is the reduction of. If it is given, and its dimension or a mirror was reduced, the
 // effect of a push is measured: a run of all drawn nodes, in up to `seconds` more. Throws

@@ -19,25 +19,33 @@ constexpr std::int64_t longest_path = 100;
 constexpr std::int64_t most_looks = 1'000'000;
 constexpr double safety = 2;
 
-// Advances q and v by `until` [s], with errors in units of `length` [m] and `speed` [m/s]. Returns
-// false if the deadline passes before.
+// Advances q and v by `until` [s], with errors in units of `length` [m] and `speed` [m/s], and adds
+// the energy that damping takes [J]. Returns false if the deadline passes before.
 bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v, double until,
-                           double tolerance, double length, double speed,
+                           double tolerance, double length, double speed, double& dissipated,
                            const Deadline& deadline) {
   namespace odeint = boost::numeric::odeint;
   using Stacked = std::vector<double>;
   const Index n = system.size();
   const Vec start = q, per_mass = system.mass().cwiseInverse();
-  Vec now(n), f(n);
+  const Damping* damping = system.damping();
+  const double energy = system.mass().sum() * speed * speed;  // unit of the energy taken
+  Vec now(n), fast(n), f(n), friction(n);
 
   const auto rate = [&](const Stacked& y, Stacked& dy, double) {
     const Eigen::Map<const Vec> u(y.data(), n), w(y.data() + n, n);
     now = start + length * u;
-    system.force(now, f);
+    system.force({0, now}, f);
+    if (damping) {
+      fast = speed * w;
+      damping->friction({0, now, fast}, friction);
+      f += friction;
+      dy[2 * n] = -friction.dot(fast) / energy;
+    }
     Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
     Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
   };
-  Stacked y(2 * n, 0.0), end(2 * n);
+  Stacked y(2 * n + (damping ? 1 : 0), 0.0), end(y.size());
   Eigen::Map<Vec>(y.data() + n, n) = v / speed;
 
   auto stepper =
@@ -65,6 +73,7 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
   }
   q = start + length * Eigen::Map<const Vec>(y.data(), n);
   v = speed * Eigen::Map<const Vec>(y.data() + n, n);
+  if (damping) dissipated += energy * y.back();
   return true;
 }
 
@@ -90,13 +99,19 @@ std::optional<Solution> seen_run(const Model& scene, const Method& method, const
   return solution;
 }
 
+const Method& resolving_method(const System& system) {
+  const Method& composed = *find_method("kahan_li8");
+  return applies_to(composed, system) ? composed : *find_method("rk8");
+}
+
 std::optional<Solution> composition(const Model& scene, const State& initial, double until,
                                     double h, double seconds) {
-  auto solution = seen_run(scene, *find_method("kahan_li8"), {.step_size = h}, initial,
+  const Method& method = resolving_method(scene.system());
+  auto solution = seen_run(scene, method, {.step_size = h}, initial,
                            random_step_times(h, until, most_looks), seconds);
   if (!solution) return {};
   solution->knob = h;
-  solution->made_by = fmt::format("kahan_li8 at h = {:.6g} s", h);
+  solution->made_by = fmt::format("{} at h = {:.6g} s", method.name, h);
   return solution;
 }
 
@@ -116,7 +131,7 @@ std::optional<Solution> fehlberg(const Model& scene, double until, double tolera
                      has_scales ? scales.displacement_of(scales.parts[i]) : scales.displacement,
                  speed = has_scales ? scales.speed_of(scales.parts[i]) : scales.speed;
     if (!fehlberg_step_by_step(part, q, v, until, tolerance, length > 0 ? length : 1,
-                               speed > 0 ? speed : 1, deadline)) {
+                               speed > 0 ? speed : 1, solution.end.dissipated, deadline)) {
       stop_if_interrupted();
       return {};
     }

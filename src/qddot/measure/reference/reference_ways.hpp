@@ -27,8 +27,12 @@ std::optional<Solution> seen_run(const Model& scene, const Method& method, const
                                  const State& initial, const std::vector<double>& times,
                                  double seconds);
 
-// The motion by Kahan and Li's composition of order 8 with steps of h [s], with scales from each
-// step; of more than a million, from random ones.
+// The method of order 8 and constant steps that resolves vibrations: Kahan and Li's composition or,
+// if dashpots forbid its steps back in time, Prince and Dormand's.
+const Method& resolving_method(const System& system);
+
+// The motion by that method with steps of h [s], with scales from each step; of more than a
+// million, from random ones.
 std::optional<Solution> composition(const Model& scene, const State& initial, double until,
                                     double h, double seconds);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "qddot/analysis/damped_step.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -169,6 +170,18 @@ std::optional<bool> holds(const Method& method, const Options& options, const Mo
   return summary.outcome == Outcome::reached_end && largest - energy <= same * (energy - lowest);
 }
 
+// The warning for a system with Damping: of leapfrog methods, whose limit is known.
+std::string damped_step_warning(const Method& method, double h, const Model& scene) {
+  const System& system = scene.system();
+  if (method.friction_lag == 0 || !is_quickly_searched(system)) return "";
+  const double limit = damped_step_limit(system, scene.initial().q, method.friction_lag);
+  if (h <= limit) return "";
+  return fmt::format(
+      "h = {:.4g} s is above {:.4g} s, where {} blows up with this damping: without it the limit "
+      "would be {:.4g} s",
+      h, limit, method.name, linear_limit(method) / quick_frequency(system, scene.initial().q));
+}
+
 // Half a sentence if the forces of the start accelerate nodes to absurd speeds; empty if not.
 std::string extreme_start(const Model& scene) {
   const Vec& mass = scene.system().mass();
@@ -191,6 +204,7 @@ std::string step_warning(const Method& method, const Options& options, const Mod
   const System& system = scene.system();
   const Vec& q = scene.initial().q;
   const double limit = linear_limit(method), h = options.step_size;
+  if (system.damping()) return damped_step_warning(method, h, scene);
   if (h * frequency_bound(system, q) <= limit) return "";
   const double w = quick_frequency(system, q);
   if (h * w <= limit) return "";

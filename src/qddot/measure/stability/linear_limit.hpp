@@ -12,7 +12,8 @@ constexpr double least_searched_h_omega = 0.01, largest_searched_h_omega = 100;
 // on a grid of 100 points a decade. It is also searched between grid points where the two roots
 // meet at 1 or -1, since narrow gaps of instability open there. Bisection refines it to a relative
 // 1e-12. Zero if growth fades towards h = 0 as a power of h w, or begins at the least h w. Infinite
-// if nothing grows up to the largest h w.
-double measured_limit(const Method& method);
+// if nothing grows up to the largest h w. `zeta`: the damping ratio of the vibration; see
+// linear_step, which throws for damping that the method refuses.
+double measured_limit(const Method& method, double zeta = 0);
 
 }  // namespace qddot::inline measure

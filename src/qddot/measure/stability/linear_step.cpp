@@ -97,10 +97,12 @@ std::vector<Complex> found_roots(Responses y, double noise) {
   return roots;
 }
 
-// One mass and one spring of rest length zero with w = 1, on a line. `quartic` [N/m^3] of its law.
-std::unique_ptr<System> oscillator(double quartic) {
+// One mass and one spring of rest length zero with w = 1, on a line, beside a dashpot. `quartic`
+// [N/m^3] of its law.
+std::unique_ptr<System> oscillator(double quartic, double zeta) {
   Network network{.dimension = 1, .node_mass = Vec::Ones(1)};
-  network.anchors = {{0, Eigen::Vector3d::Zero(), {.stiffness = 1, .quartic = quartic}}};
+  network.anchors = {
+      {0, Eigen::Vector3d::Zero(), {.stiffness = 1, .quartic = quartic, .damping = 2 * zeta}}};
   return make_mass_spring(network);
 }
 
@@ -108,10 +110,10 @@ std::unique_ptr<System> oscillator(double quartic) {
 // solution. It takes more if the law is not linear by its form. This quartic part is none.
 constexpr double nominal_quartic = 1e-307, finest_solve = 1e-16;
 
-Responses respond(const Method& method, Options options) {
+Responses respond(const Method& method, Options options, double zeta) {
   const bool refines = method.listens_to(Option::solve_tolerance) && options.solve_tolerance == 0;
   if (refines) options.solve_tolerance = finest_solve;
-  const auto system = oscillator(refines ? nominal_quartic : 0);
+  const auto system = oscillator(refines ? nominal_quartic : 0, zeta);
   const auto integrator = make_integrator(method, *system, options);
   Responses y(steps_observed + 1, Eigen::Matrix2d::Identity());
   for (const int start : {0, 1}) {
@@ -159,13 +161,16 @@ std::vector<Complex> roots_of(const Responses& y, double noise) {
   return roots;
 }
 
-LinearStep linear_step(const Method& method, double h_omega, Options options) {
+LinearStep linear_step(const Method& method, double h_omega, Options options, double zeta) {
   if (!has_linear_step(method)) {
     throw std::invalid_argument(method.name + " has no step of its own: it chooses its steps");
   }
-  if (method.recurrence_roots) return {h_omega, method.recurrence_roots(h_omega)};
+  if (zeta > 0 && method.takes_damping() != Damped::by_any)
+    throw std::invalid_argument(method.name + " takes no dashpots");
+  if (method.recurrence_roots) return {h_omega, method.recurrence_roots(h_omega, zeta)};
   options.step_size = h_omega;  // w = 1
-  return {h_omega, roots_of(in_units_of_a_step(respond(method, options), h_omega), root_rounding)};
+  return {h_omega,
+          roots_of(in_units_of_a_step(respond(method, options, zeta), h_omega), root_rounding)};
 }
 
 }  // namespace qddot::inline measure

@@ -10,6 +10,7 @@ namespace qddot::inline measure {
 // The effect of one fixed step of h w = `h_omega` on a vibration q'' = -w^2 q. A step multiplies (w
 // q, v), and all that the method remembers of earlier steps, by a matrix. The roots are the
 // matrix's eigenvalues, which decide the long run. The exact motion has the one pair exp(+- i h w).
+// With damping, q'' = -w^2 q - 2 zeta w q', it is exp((-zeta +- i sqrt(1 - zeta^2)) h w).
 struct LinearStep {
   double h_omega = 0;
   std::vector<std::complex<double>> roots{};  // the largest modulus first
@@ -45,8 +46,9 @@ constexpr int steps_observed = 7;
 std::vector<std::complex<double>> roots_of(const Responses& y, double noise);
 
 // The method's step at that h w: given by the method itself (Method::recurrence_roots), or found by
-// running it with `options`, except for their step size. Throws std::runtime_error with the reason
-// if a step fails. Throws std::invalid_argument for a method without fixed steps.
-LinearStep linear_step(const Method& method, double h_omega, Options options = {});
+// running it with `options`, except for their step size. `zeta`: the damping ratio of the
+// vibration. Throws std::runtime_error with the reason if a step fails. Throws
+// std::invalid_argument for a method without fixed steps, and for damping that the method refuses.
+LinearStep linear_step(const Method& method, double h_omega, Options options = {}, double zeta = 0);
 
 }  // namespace qddot::inline measure

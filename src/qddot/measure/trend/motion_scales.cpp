@@ -83,7 +83,11 @@ MotionScales motion_scales(const Model& scene, const Momenta& momenta, double un
   Observer observer{{}, [&](const State& state) { look.at(state); }};
   for (int k = 1; k <= steps; ++k) observer.times.push_back(k * h);
   const bool is_massless = scene.system().has_massless();
-  const Method& method = *find_method(is_massless ? "ida" : has_k ? "blanes_moan4" : "dprkn8");
+  const bool has_dashpots = scene.system().damping() && scene.system().damping()->has_dashpots();
+  const Method& method = *find_method(is_massless    ? (has_dashpots ? "bdf2" : "ida")
+                                      : has_dashpots ? "rk4"
+                                      : has_k        ? "blanes_moan4"
+                                                     : "dprkn8");
   const double knob = method.knob == Knob::rtol ? fine_rtol : h;
   State state = scene.initial();
   const Deadline deadline(longest_run);

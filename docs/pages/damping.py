@@ -1,0 +1,67 @@
+"""The numbers of the page on damping."""
+
+import method_pages
+from chart_data import leads_from, leads_to
+from page_data import NOTHING, figures, row, rows
+
+ZETAS = ["0.01", "0.1", "0.3", "1", "3", "10"]
+CROSSOVERS = [
+    ("crossover_damped_01", "ζ = 0.1"),
+    ("crossover_damped_1", "ζ = 1"),
+    ("crossover_damped_10", "ζ = 10"),
+]
+CHARTS = [
+    ("damped_cloth_01", "The cloth, ζ = 0.1"),
+    ("damped_cloth_1", "The cloth, ζ = 1"),
+    ("damped_chain_01", "The chain, ζ = 0.1"),
+    ("damped_chain_1", "The chain, ζ = 1"),
+    ("plucked_string_01", "A plucked string, ζ = 0.1"),
+    ("plucked_string_1", "A plucked string, ζ = 1"),
+]
+
+
+def limit(method, zeta):
+    """The largest stable h ω of a method at a damping ratio, as measured."""
+    found = row("damped_limits", "damped_limits.csv", method=method, damping_ratio=float(zeta))
+    measured = found["h_omega_limit_measured"]
+    return "none" if float(measured) == 0 else figures(measured, 3)
+
+
+def worst_damped_limit():
+    """The largest difference of a measured limit from its formula, relative to it."""
+    limits = rows("damped_limits", "damped_limits.csv")
+    return max(abs(float(limit["relative_difference"] or 0)) for limit in limits)
+
+
+def label(ratio):
+    """A stiffness ratio as the table says it."""
+    if ratio is None:
+        return NOTHING
+    return str(int(ratio)) if ratio < 100 else f"{ratio:.0e}".replace("e+0", "e")
+
+
+def change_of_lead(study, wanted):
+    """The ratio up to which explicit methods lead before implicit ones, and that from which on the
+    latter do."""
+    both = {"kinds": ["explicit", "implicit"]}
+    last = leads_to(study, wanted, "explicit", **both)
+    first = leads_from(study, wanted, "implicit", **both)
+    return f"{label(last)} / {label(first)}"
+
+
+def _hand_written(implicit):
+    return [
+        m.name
+        for m in method_pages.all_methods()
+        if m.entry["family"] == "hand-written" and m.entry["implicit"] == implicit
+    ]
+
+
+def explicit_methods():
+    """The hand-written explicit methods."""
+    return _hand_written("no")
+
+
+def implicit_methods():
+    """The hand-written implicit methods."""
+    return _hand_written("yes")
