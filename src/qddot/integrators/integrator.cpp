@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "qddot/integrators/massless_balance.hpp"
 #include "qddot/integrators/method.hpp"
 
 namespace qddot {
@@ -117,8 +118,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
     return Outcome::not_finite;
   }
   if (system_.has_massless() && !method_.is(Trait::accepts_massless)) return Outcome::singular_mass;
-  if (system_.has_massless() && system_.damping() && system_.damping()->has_dashpots() &&
-      !method_.is(Trait::accepts_massless_dashpots)) {
+  if (!method_.is(Trait::accepts_massless_dashpots) && has_massless_dashpots(system_, state.q)) {
     message_ =
         "a massless node beside a dashpot has a velocity of first order: give it a mass, or take "
         "implicit_euler, semi_implicit_euler or bdf2";

@@ -22,6 +22,19 @@ constexpr double rounding = 1e-10;
 
 }  // namespace
 
+bool has_massless_dashpots(const System& system, const Vec& q) {
+  const Damping* damping = system.damping();
+  if (!damping || !damping->has_dashpots() || !system.has_massless()) return false;
+  if (!system.has_stiffness()) return true;  // not known
+  SymmetricMatrix c = system.stiffness_pattern();
+  damping->damping_matrix(q, c);
+  for (Index i = 0; i < system.size(); ++i) {
+    // C is positive semidefinite: without an entry on the diagonal a row is zero.
+    if (system.mass()[i] == 0 && c.valuePtr()[c.outerIndexPtr()[i]] > 0) return true;
+  }
+  return false;
+}
+
 MasslessBalance::MasslessBalance(const System& system, Vec start, double tolerance,
                                  double solve_tolerance)
     : tolerance_(tolerance),

@@ -9,6 +9,10 @@
 
 namespace qddot {
 
+// Whether an unknown without mass is beside a dashpot at q (n). It then moves at a finite speed, by
+// an equation of first order, whatever its springs do.
+bool has_massless_dashpots(const System& system, const Vec& q);
+
 // Checks whether massless nodes stay where their forces balance. They do at a minimum of V over
 // their positions: -K among their unknowns is positive semidefinite there. Otherwise, as between
 // compressed springs, the balance is unstable: a node without mass leaves it at once, and no

@@ -51,9 +51,8 @@ void SystemRun::begin(const State& state) {
   message_.clear();
   reached_ = state.t;
   growth_.start(state);
-  // A massless node on a dashpot moves at a finite speed, whatever its springs do.
-  const bool is_held = !system().damping() || !system().damping()->has_dashpots();
-  if (system().has_massless() && system().has_stiffness() && is_held) {
+  if (system().has_massless() && system().has_stiffness() &&
+      !has_massless_dashpots(system(), state.q)) {
     balance_ = std::make_unique<MasslessBalance>(
         system(), state.q, std::max(balance_tolerance, options_.rtol),
         std::max(solve_tolerance, options_.solve_tolerance));
