@@ -119,7 +119,7 @@ BOOST_DATA_TEST_CASE(one_step_keeps_the_symplectic_form_exactly_where_the_regist
   // orders it is a thousandth of that.
   if (method.is(Trait::symplectic)) {
     BOOST_TEST(defect < 1e-6);
-  } else {
+  } else if (method.order < 8) {  // whose defect is below that of the differences
     BOOST_TEST(defect > (method.order == 1 ? 1e-2 : method.order == 2 ? 1e-3 : 1e-5));
   }
 }

@@ -77,6 +77,7 @@ TABLES = {
             "map": "method,h,h_omega,amplitude,outcome,growth_rate,predicted_growth_rate",
             "limits": "method,h_limit_predicted,h_limit_measured",
             "linear": "method,", "modal": "method,", "adaptive": "method,",
+            "damped_limits": "method,damping_ratio,h_omega_limit_predicted",
         },
         ("verlet", "none"),
     ),
@@ -498,6 +499,26 @@ class Stability(Programs):
         )
         self.holds(ended.stderr, "compression = 1000000000", "its row is left out")
         self.assertEqual(len(table("out/map.csv")), 2)
+
+    def test_a_damped_scene_has_limits_by_damping_ratio_and_modes_their_own(self):
+        with open("damped.toml", "w", encoding="utf-8") as file:
+            file.write('[generator]\nkind = "pendulum"\ndamping_time = 0.02\n')
+        self.map(
+            "--scene damped.toml --methods verlet,kahan_li8,implicit_midpoint --columns 1 "
+            "--amplitudes 0.1 --step-size 1e-3"
+        )
+        limits = table("out/damped_limits.csv")
+        self.assertEqual({one["method"] for one in limits}, {"verlet"})
+        for one in limits:
+            z = one["damping_ratio"]
+            exact = 2 * (math.sqrt(1 + 4 * z * z) - 2 * z)
+            self.near(one["h_omega_limit_predicted"] / exact, 1, 1e-12)
+            self.near(one["h_omega_limit_measured"] / exact, 1, 1e-8)
+        modes = [one for one in table("out/modal.csv") if one["method"] == "verlet"]
+        fast = modes[-1]  # along the spring, c/k = 0.02 s: zeta = 0.01 w
+        self.near(fast["damping_ratio_physical"] / (0.01 * fast["omega"]), 1, 1e-6)
+        for one in modes:
+            self.near(one["damping_ratio_measured"], one["damping_ratio_physical"], 1e-3)
 
     def test_modes_are_excited_where_the_scene_rests(self):
         methods = "--methods verlet,implicit_euler --step-size 0.01 --amplitudes 0.1 --columns 1"
