@@ -151,4 +151,25 @@ BOOST_AUTO_TEST_CASE(every_generator_is_explained) {
   }
 }
 
+// A mass on springs along both axes: w = 10 and 20 rad/s, each with its dashpot, and air of 0.4/s.
+BOOST_AUTO_TEST_CASE(damping_ratios_are_those_of_the_lowest_and_the_highest_mode) {
+  Scene scene{.dimension = 2};
+  scene.nodes = {{.position = {-1, 0, 0}, .pinned = true},
+                 {.position = {0, -1, 0}, .pinned = true},
+                 {.position = {0, 0, 0}, .mass = 1}};
+  scene.springs = {{{0, 2}, {.stiffness = 100, .rest_length = 1, .damping = 4}},
+                   {{1, 2}, {.stiffness = 400, .rest_length = 1, .damping = 20}}};
+  scene.air_damping = 0.4;
+  const Explanation e = explained(scene);
+  BOOST_TEST(e.is_damped);
+  BOOST_TEST(std::abs(e.zeta_lowest - (4 + 0.4) / (2 * 10)) < 1e-10);
+  const double zeta = (20 + 0.4) / (2 * 20);
+  BOOST_TEST(std::abs(e.zeta_highest - zeta) < 1e-10);
+  const double step = (std::sqrt(1 + 4 * zeta * zeta) - 2 * zeta) * 2 / 20;
+  BOOST_TEST(std::abs(e.verlet_step / step - 1) < 1e-3);
+  const std::string words = explanation_in_words(e, scene);
+  BOOST_TEST(words.find("damping ratio 0.51 of the highest mode") != std::string::npos);
+  BOOST_TEST(words.find("0.22 of the lowest") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

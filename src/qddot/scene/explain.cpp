@@ -63,13 +63,11 @@ void find_damping(Explanation& e, const System& system, const Vec& q) {
 }
 
 std::string damping_sentence(const Explanation& e) {
-  const auto of = [](double zeta) {
-    return std::isnan(zeta) ? std::string("unknown") : fmt::format("{:.3g}", zeta);
-  };
-  std::string sentence = fmt::format(
-      "damping ratio {} of the lowest mode at the start, {} of the "
-      "highest",
-      of(e.zeta_lowest), of(e.zeta_highest));
+  if (std::isnan(e.zeta_highest)) return "its damping ratios at the start are not known";
+  std::string sentence =
+      fmt::format("damping ratio {:.3g} of the highest mode at the start", e.zeta_highest);
+  if (!std::isnan(e.zeta_lowest))
+    sentence += fmt::format(", {:.3g} of the lowest that springs resist", e.zeta_lowest);
   if (e.verlet_step > 0) {
     sentence += fmt::format("; verlet, whose friction is late, is stable up to h = {:.4g} s",
                             e.verlet_step);
