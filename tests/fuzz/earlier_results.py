@@ -7,6 +7,7 @@ import resource
 import subprocess
 from pathlib import Path
 
+from limited_run import environment_of
 from random_scenes import spoiled
 from studies import COMMANDS, SCENES, write_scenes
 
@@ -27,14 +28,15 @@ def earlier_results(programs, names, place):
 @functools.cache
 def least_memory(program):
     """Bytes of address space, within 2 %, with which the program can at least print its help, and the
-    most that it may take."""
+    most that it may take. It runs with one thread, as in the campaign: a thread of OpenBLAS that gets
+    no memory asks for it without an end."""
     limit = resource.getrlimit(resource.RLIMIT_AS)[1]
     most = 4 << 30 if limit == resource.RLIM_INFINITY else limit
     low, high = 1 << 20, most
     while high > 1.02 * low:
         middle = int((low * high) ** 0.5)
         argv = ["prlimit", f"--as={middle}", "--", program, "--help"]
-        done = subprocess.run(argv, capture_output=True, check=False)
+        done = subprocess.run(argv, env=environment_of("/tmp"), capture_output=True, check=False)
         low, high = (low, middle) if done.returncode == 0 else (middle, high)
     return high, most
 
