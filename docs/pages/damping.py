@@ -21,10 +21,11 @@ CHARTS = [
 
 
 def limit(method, zeta):
-    """The largest stable h ω of a method at a damping ratio, as measured."""
+    """The largest stable h ω of a method at a damping ratio, as measured; rkc takes more stages
+    where steps are longer."""
     found = row("damped_limits", "damped_limits.csv", method=method, damping_ratio=float(zeta))
     measured = found["h_omega_limit_measured"]
-    return "none" if float(measured) == 0 else figures(measured, 3)
+    return figures(measured, 3) if measured else "no limit"
 
 
 def worst_damped_limit():

@@ -12,6 +12,7 @@
 #include "experiments/kit/program.hpp"
 #include "experiments/kit/progress.hpp"
 #include "experiments/kit/whole_file.hpp"
+#include "qddot/integrators/misfit_words.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/scene_file.hpp"
@@ -119,6 +120,10 @@ void require_fit(const Method& method, const Model& model, const std::string& so
         "{}: stiff_above: it is missing, and {} integrates the forces of stiff springs apart from "
         "the others; allowed are finite numbers above 0 in N/m, or the methods {}",
         source, method.name, others()));
+  }
+  if (why == Outcome::refuses_damping) {
+    throw InvalidInput(fmt::format("{}: damping: {}: {}; allowed are {}", source, method.name,
+                                   misfit_words(method, *why), others()));
   }
   const auto massless = model.massless_nodes();
   if (!massless.empty() && !method.is(Trait::accepts_massless)) {

@@ -402,7 +402,8 @@ class System:
         if not np.all(np.isfinite(k.data if hasattr(k, "tocsc") else k)):
             raise ValueError(f"{name}: some of its entries are not finite")
         if abs(k - k.T).max() > ROUNDING * abs(k).max():
-            raise ValueError(f"{name}: it is not symmetric")
+            whose = "the K of a potential" if name == "stiffness" else "the C of damping"
+            raise ValueError(f"{name}: it is not symmetric, as {whose} is")
         return k.copy()
 
     def _pairs(self, pattern: Any) -> Pattern:

@@ -43,12 +43,11 @@ class Damping(unittest.TestCase):
             balance = energy.total + energy.dissipated
             self.assertLess(np.ptp(balance), 1e-9)
             self.assertGreater(energy.dissipated[-1], 1.0)
-            self.assertEqual(motion.energy_loss, 0)
+            self.assertLess(motion.energy_loss, 1e-9)
 
     def test_a_method_that_takes_no_dashpots_says_why(self):
-        run = qddot.solve(pair(), "kahan_li8", step_size=0.01)
-        self.assertEqual(run.outcome, "refuses_damping")
-        self.assertIn("drifts back in time", run.message)
+        with self.assertRaisesRegex(ValueError, "kahan_li8: it refuses this damping, since"):
+            qddot.solve(pair(), "kahan_li8", step_size=0.01)
         self.assertTrue(qddot.solve(pair(damping=None, air_damping=1), "kahan_li8", step_size=0.01))
 
     def test_generators_take_damping(self):

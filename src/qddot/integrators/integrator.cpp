@@ -10,6 +10,7 @@
 
 #include "qddot/integrators/massless_balance.hpp"
 #include "qddot/integrators/method.hpp"
+#include "qddot/integrators/misfit_words.hpp"
 
 namespace qddot {
 namespace {
@@ -125,12 +126,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
     return Outcome::singular_mass;
   }
   if (const auto why = misfit(method_, system_)) {
-    if (*why == Outcome::refuses_damping && *method_.why_not_damped) {
-      message_ = fmt::format(
-          "{} refuses this damping, since {}: take verlet, symmetric4, rk4 or an "
-          "implicit method",
-          method_.name, method_.why_not_damped);
-    }
+    message_ = misfit_words(method_, *why);
     return *why;
   }
   if (const double whole = t_end - state.t; whole > 0 && !(whole * whole > shortest_squared)) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "qddot/integrators/misfit_words.hpp"
 #include "qddot/integrators/nearest_name.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/scene/settle.hpp"
@@ -48,7 +49,7 @@ Simulation::Simulation(std::shared_ptr<const Model> model, const Method& method,
       options_(measure::with_tolerance_scales(options, *model_)),
       state_(model_->initial()) {
   if (const auto why = misfit(method, model_->system()))
-    throw std::invalid_argument(fmt::format("{}: {}", method.name, advice(*why)));
+    throw std::invalid_argument(fmt::format("{}: {}", method.name, misfit_words(method, *why)));
   integrator_ = make_integrator(method, model_->system(), options_);
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "qddot/integrators/misfit_words.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/speed/front_again.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
@@ -22,7 +23,7 @@ void require_measurable(const Model& model, const std::vector<const Method*>& me
   for (const Method* method : methods) {
     if (const auto why = misfit(*method, system)) {
       throw std::invalid_argument(
-          fmt::format("work_precision: {} cannot run this: {}", method->name, advice(*why)));
+          fmt::format("work_precision: {} cannot run this: {}", method->name, misfit_words(*method, *why)));
     }
   }
 }
