@@ -8,6 +8,9 @@ namespace {
 // ARKODE takes its own fraction of the bound, which must be below 1.
 constexpr double fraction = 0.99;
 
+// Refusals of one step before ARKODE gives up.
+constexpr int most_refusals = 50;
+
 }  // namespace
 
 ArkodeStepper::ArkodeStepper(SystemRun& run, MakeMatrix make_matrix, const System& implicit_part)
@@ -22,6 +25,9 @@ void ArkodeStepper::keep(void* made) {
 void ArkodeStepper::set_tolerances() {
   check(ARKodeSVtolerances(memory(), rtol(), atol()), "ARKodeSVtolerances");
   check(ARKodeSetMaxHnilWarns(memory(), -1), "ARKodeSetMaxHnilWarns");
+  // Where the force jumps, as of a spring that turns over, a long step is refused more often than
+  // the 7 times that ARKODE allows.
+  check(ARKodeSetMaxErrTestFails(memory(), most_refusals), "ARKodeSetMaxErrTestFails");
 }
 
 void ArkodeStepper::limit_steps(const System& part, double y) {

@@ -82,6 +82,7 @@ inline constexpr auto ARKodeSetJacEvalFrequency = ARKStepSetJacEvalFrequency;
 inline constexpr auto ARKodeSetLSetupFrequency = ARKStepSetLSetupFrequency;
 inline constexpr auto ARKodeSetLinSysFn = ARKStepSetLinSysFn;
 inline constexpr auto ARKodeSetLinearSolver = ARKStepSetLinearSolver;
+inline constexpr auto ARKodeSetMaxErrTestFails = ARKStepSetMaxErrTestFails;
 inline constexpr auto ARKodeSetMaxHnilWarns = ARKStepSetMaxHnilWarns;
 inline constexpr auto ARKodeSetMaxNumSteps = ARKStepSetMaxNumSteps;
 inline constexpr auto ARKodeSetNonlinearSolver = ARKStepSetNonlinearSolver;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "qddot/analysis/damped_step.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -83,6 +84,7 @@ PlainEnergies plain_energies(const PlainModel<long double>& model, const std::ve
         plain.potential_size += std::abs(own * x[3 * i + c]);
         plain.force_size += std::abs(own);
       }
+      plain.force_size += model.scene().air_damping * node.mass * std::abs(v[3 * i + c]);
     }
   }
   plain.potential = model.energy(x, std::vector<long double>(v.size(), 0));
@@ -174,7 +176,10 @@ End run(const Model& reduced, const Method& method, double knob, double until) {
 double resolving_step(const Model& reduced, double until) {
   const double w = frequency_bound(reduced.system(), reduced.initial().q);
   // Massless nodes have no frequency; the others' horizon is some vibrations.
-  return until / (std::isfinite(w) ? std::max(32.0, std::ceil(until * w / 0.2)) : 1000.0);
+  if (!std::isfinite(w)) return until / 1000;
+  // Beside dashpots the limit of symmetric4 is the shortest, 0.36 of Verlet's.
+  const double limit = damped_step_limit(reduced.system(), reduced.initial().q, 2);
+  return until / std::max({32.0, std::ceil(until * w / 0.2), std::ceil(4 * until / limit)});
 }
 
 bool can_take(const Method& method, const Model& reduced) {

@@ -1,5 +1,6 @@
 #include "qddot/analysis/exponential_motion.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -23,14 +24,20 @@ ExponentialMotion::ExponentialMotion(const System& system, double duration)
            Eigen::MatrixXd(Eigen::SparseMatrix<double>(m.selfadjointView<Eigen::Lower>()));
   };
   system.stiffness(anywhere, matrix);
-  all.block(n, 0, n, n) = duration * per_mass_times(matrix);
+  const Eigen::MatrixXd accelerations = per_mass_times(matrix);
+  // In the unit of time in which accelerations are about as large as z, rounding is least. A power
+  // of 2 rounds nothing itself.
+  const double square = accelerations.cwiseAbs().rowwise().sum().maxCoeff();
+  const double unit = square > 0 ? std::exp2(std::round(-0.5 * std::log2(square))) : 1;
+  all.block(n, 0, n, n) = duration * unit * accelerations;
   damping->damping_matrix(anywhere, matrix);
   all.block(n, n, n, n) = -duration * per_mass_times(matrix);
-  all.block(0, n, n, n).diagonal().setConstant(duration);
-  all.block(n, 2 * n, n, n).diagonal().setConstant(duration);
-  const Eigen::MatrixXd exponential = all.exp();
-  of_v_ = exponential.block(0, n, 2 * n, n);
-  of_push_ = exponential.block(0, 2 * n, 2 * n, n);
+  all.block(0, n, n, n).diagonal().setConstant(duration / unit);
+  all.block(n, 2 * n, n, n).diagonal().setConstant(duration / unit);
+  Eigen::MatrixXd exponential = all.exp();
+  exponential.middleRows(n, n) /= unit;
+  of_v_ = unit * exponential.block(0, n, 2 * n, n);
+  of_push_ = unit * unit * exponential.block(0, 2 * n, 2 * n, n);
 }
 
 void ExponentialMotion::propagate(const State& from, State& to) const {
