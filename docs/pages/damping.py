@@ -6,6 +6,7 @@ from page_data import NOTHING, figures, row, rows
 
 ZETAS = ["0.01", "0.1", "0.3", "1", "3", "10"]
 CROSSOVERS = [
+    ("crossover_damped_0", "ζ = 0"),
     ("crossover_damped_01", "ζ = 0.1"),
     ("crossover_damped_1", "ζ = 1"),
     ("crossover_damped_10", "ζ = 10"),

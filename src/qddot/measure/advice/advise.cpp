@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "qddot/analysis/damped_step.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/failure.hpp"
 #include "qddot/measure/advice/search.hpp"
@@ -90,6 +91,14 @@ Advices of_nothing(const Model& model, double until, const std::vector<double>& 
   return all;
 }
 
+// With damping the limit at the start, shorter by as much as 2/w is.
+double verlets_limit(const Model& model, double w_start, double w_motion) {
+  if (!(w_motion > 0)) return infinity;
+  if (!model.system().damping()) return 2 / w_motion;
+  const double lag = find_method("verlet")->friction_lag;
+  return w_start / w_motion * damped_step_limit(model.system(), model.initial().q, lag);
+}
+
 }  // namespace
 
 double Advice::margin() const {
@@ -133,7 +142,7 @@ Advices advise(const Model& model, double until, const std::vector<double>& accu
     all.w_motion = search.forecast()->w_motion();
     all.own_frequency = search.forecast()->own().at(2);
   }
-  all.largest_stable_step = all.w_motion > 0 ? 2 / all.w_motion : infinity;
+  all.largest_stable_step = verlets_limit(model, all.w_start, all.w_motion);
   all.runs = static_cast<int>(search.runs().all().size());
   all.seconds = seconds_since(begin);
   return all;
