@@ -6,8 +6,8 @@
 // It takes 13 forces a step. Nystrom's methods and splittings of that order need fewer, but only
 // for forces that do not depend on velocities. A vibration q'' = -w^2 q grows by 1.4e-8 a step at
 // h w = 1 and decays from h w = 1.6 to 3.7; beyond, it grows fast.
-#include "integrators/methods/prince_dormand.hpp"
 #include "qddot/integrators/base/fixed_steps.hpp"
+#include "qddot/integrators/base/prince_dormand_pair.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/vector_updates.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "integrators/methods/prince_dormand.hpp"
 #include "integrators/sundials/arkode.hpp"
+#include "qddot/integrators/base/prince_dormand_pair.hpp"
 
 namespace qddot::sundials {
 
