@@ -33,6 +33,7 @@ nlohmann::json record_of(const DriftRun& run) {
   return {{"method", run.method->name},
           {"value", run.value},
           {"summary", run.summary},
+          {"dissipated", run.summary.dissipated},
           {"seconds", run.seconds},
           {"scales", run.scales},
           {"energy", run.energy},
@@ -42,15 +43,17 @@ nlohmann::json record_of(const DriftRun& run) {
 }
 
 DriftRun drift_run_of(const nlohmann::json& record) {
-  return {.method = find_method(record.at("method").get<std::string>()),
-          .value = record.at("value"),
-          .summary = record.at("summary"),
-          .seconds = record.at("seconds"),
-          .scales = record.at("scales"),
-          .energy = record.at("energy"),
-          .linear = trend_in(record.at("linear")),
-          .angular = trend_in(record.at("angular")),
-          .path = record.at("path")};
+  DriftRun run{.method = find_method(record.at("method").get<std::string>()),
+               .value = record.at("value"),
+               .summary = record.at("summary"),
+               .seconds = record.at("seconds"),
+               .scales = record.at("scales"),
+               .energy = record.at("energy"),
+               .linear = trend_in(record.at("linear")),
+               .angular = trend_in(record.at("angular")),
+               .path = record.at("path")};
+  run.summary.dissipated = record.at("dissipated");
+  return run;
 }
 
 }  // namespace qddot::energy_drift

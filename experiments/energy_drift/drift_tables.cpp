@@ -151,7 +151,8 @@ Columns<SummaryRow> summary_columns() {
         }},
        {"slow_period_low", [](const Row& row) { return if_positive(row.run.energy.slow_period); }}};
   all += interval<Row>("widening", widening);
-  all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }}};
+  all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }},
+          {"dissipated", [](const Row& row) { return if_positive(row.run.summary.dissipated); }}};
   return all;
 }
 
@@ -174,7 +175,9 @@ void print_verdicts(const std::vector<DriftRun>& runs, double until) {
     const bool fixed = run.method->knob == Knob::step_size;
     const std::string who =
         fixed ? run.method->name : fmt::format("{} {:g}", run.method->name, run.value);
-    fmt::print("{:<30} {}\n", who, verdict(run, until));
+    const double taken = run.summary.dissipated;
+    fmt::print("{:<30} {}{}\n", who, verdict(run, until),
+               taken > 0 ? fmt::format("; damping took {:.4g} J beside that", taken) : "");
   }
 }
 
