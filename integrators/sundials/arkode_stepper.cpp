@@ -25,8 +25,8 @@ void ArkodeStepper::keep(void* made) {
 void ArkodeStepper::set_tolerances() {
   check(ARKodeSVtolerances(memory(), rtol(), atol()), "ARKodeSVtolerances");
   check(ARKodeSetMaxHnilWarns(memory(), -1), "ARKodeSetMaxHnilWarns");
-  // Where the force jumps, as of a spring that turns over, a long step is refused more often than
-  // the 7 times that ARKODE allows.
+  // A long step over a jump of the force, as of a spring that turns over, is refused more often
+  // than the 7 times that ARKODE allows.
   check(ARKodeSetMaxErrTestFails(memory(), most_refusals), "ARKodeSetMaxErrTestFails");
 }
 

@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(what_falls_in_air_tends_to_its_terminal_speed) {
   const Node flying = model.expand(now)[0];
   BOOST_TEST((flying.position.head<2>() - x).norm() < 1e-7);
   BOOST_TEST((flying.velocity.head<2>() - v).norm() < 1e-7);
-  // What is left of the flying node's energy and of the common fall, with what the air has taken.
+  // The energy of the flying node and of the common fall, with all that the air has taken.
   BOOST_TEST(std::abs(model.energy(now) - model.energy(model.initial())) < 1e-11);
   BOOST_TEST(std::abs(model.kinetic(now) + model.potential(now) + model.dissipated(now) -
                       model.energy(model.initial())) < 1e-10);

@@ -11,8 +11,8 @@ namespace qddot {
 //   y(t) = y'(0) sin(wt)/w + b (1 - cos wt)/w^2,
 // or y'(0) t + b t^2/2 if w = 0. Where V falls along a mode, w^2 = -s^2 is negative and
 //   y(t) = y'(0) sinh(st)/s + b (cosh st - 1)/s^2.
-// Where C = alpha M - beta K, as damping along the springs in proportion to their stiffness and air
-// give it, modes stay apart, each damped by gamma = (alpha + beta w^2)/2 (see damped_mode.hpp).
+// Modes stay apart with C = alpha M - beta K, as of air and of dashpots in proportion to stiffness.
+// Each is then damped by gamma = (alpha + beta w^2)/2 (see damped_mode.hpp).
 // There is no step and no step error, only the rounding of the dense eigenproblem. That takes
 // O(n^3) time once and n^2 memory; a motion is O(n^2). The system must outlive it.
 class LinearMotion {

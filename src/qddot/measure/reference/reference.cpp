@@ -114,7 +114,7 @@ Reference make_reference(const Model& scene, double until, double seconds, const
                    .scales = finest.scales,
                    .made_by = "modal, exact"};
     if (scene.system().damping()) {
-      // What the exact motion has lost is what damping has taken.
+      // Damping has taken all energy that the exact motion has lost.
       modal.end.dissipated =
           total_energy(scene.system(), scene.initial()) - total_energy(scene.system(), modal.end);
     }

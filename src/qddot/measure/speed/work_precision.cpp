@@ -22,8 +22,8 @@ void require_measurable(const Model& model, const std::vector<const Method*>& me
   }
   for (const Method* method : methods) {
     if (const auto why = misfit(*method, system)) {
-      throw std::invalid_argument(
-          fmt::format("work_precision: {} cannot run this: {}", method->name, misfit_words(*method, *why)));
+      throw std::invalid_argument(fmt::format("work_precision: {} cannot run this: {}",
+                                              method->name, misfit_words(*method, *why)));
     }
   }
 }
