@@ -1,8 +1,7 @@
 """The numbers of the page on damping."""
 
 import method_pages
-from chart_data import leads_from, leads_to
-from page_data import NOTHING, figures, row, rows
+from page_data import figures, row, rows
 
 ZETAS = ["0.01", "0.1", "0.3", "1", "3", "10"]
 CROSSOVERS = [
@@ -33,22 +32,6 @@ def worst_damped_limit():
     """The largest difference of a measured limit from its formula, relative to it."""
     limits = rows("damped_limits", "damped_limits.csv")
     return max(abs(float(limit["relative_difference"] or 0)) for limit in limits)
-
-
-def label(ratio):
-    """A stiffness ratio as the table says it."""
-    if ratio is None:
-        return NOTHING
-    return str(int(ratio)) if ratio < 100 else f"{ratio:.0e}".replace("e+0", "e")
-
-
-def change_of_lead(study, wanted):
-    """The ratio up to which explicit methods lead before implicit ones, and that from which on the
-    latter do."""
-    both = {"kinds": ["explicit", "implicit"]}
-    last = leads_to(study, wanted, "explicit", **both)
-    first = leads_from(study, wanted, "implicit", **both)
-    return f"{label(last)} / {label(first)}"
 
 
 def _hand_written(implicit):

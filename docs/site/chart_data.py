@@ -111,6 +111,22 @@ def leads_from(study, accuracy, kind, **among):
     return min((stiffness for stiffness, _ in led), default=None)
 
 
+def stiffness_ratio(ratio):
+    """A measured ratio as the tables say it."""
+    if ratio is None:
+        return NOTHING
+    return str(int(ratio)) if ratio < 100 else f"{ratio:.0e}".replace("e+0", "e")
+
+
+def change_of_lead(study, accuracy):
+    """The ratio up to which explicit methods lead before implicit ones, and that from which on the
+    latter do."""
+    both = {"kinds": ["explicit", "implicit"]}
+    last = leads_to(study, accuracy, "explicit", **both)
+    first = leads_from(study, accuracy, "implicit", **both)
+    return f"{stiffness_ratio(last)} / {stiffness_ratio(first)}"
+
+
 def fastest_at(study, stiffness, accuracy):
     """The fastest method of all at a measured stiffness ratio."""
     return row(study, "crossover.csv", stiffness_ratio=stiffness, accuracy=accuracy)["method"]
