@@ -19,6 +19,28 @@
 namespace qddot::registered {
 namespace {
 
+// With friction: all of a step but the work that friction takes, beside the force.
+class DampedKicks final : public BesideForce {
+ public:
+  struct Next {
+    Vec &q, &half, &predicted, &f, &v;  // half: v_{n+1/2}
+  };
+  DampedKicks(const Motion& now, double h, const Next& next) : now_(now), h_(h), next_(next) {}
+
+  void before(Index first, Index end) override {
+    half_kick_and_drift(now_, first, end, h_, next_.q, next_.half, next_.predicted);
+  }
+  double after(Index first, Index end) override {
+    add_quotient(next_.half, first, end, h_ / 2, next_.f, now_.m, next_.v);
+    return squared_norm(next_.v.segment(first, end - first));
+  }
+
+ private:
+  Motion now_;
+  double h_;
+  Next next_;
+};
+
 // The second kick of a step, the first of the next and the drift are done in one pass over the
 // vectors: x has v_{n+1/2}, and its last kick is still to come.
 class Verlet final : public Formula {
@@ -38,7 +60,7 @@ class Verlet final : public Formula {
     x.f.resize(state.q.size());
     x.half = 0;
     force(state, x.f);
-    x.friction = friction();
+    if (is_damped()) x.friction = friction();
   }
 
   Outcome step(const X& x, double h, X& next) {
@@ -70,15 +92,21 @@ class Verlet final : public Formula {
  private:
   Outcome step_damped(const X& x, double h, X& next) {
     const Mass& mass = system().mass();
-    add_quotient(x.v, h, x.f, mass, predicted_);
-    v_.add_quotient(x.v, h / 2, x.f, mass, half_);
-    q_.add_scaled(x.q, h, half_, next.q);
-    force({next.t, next.q, predicted_}, next.f);
-    next.friction = friction();
-    v_.add_quotient(half_, h / 2, next.f, mass, next.v);
-    next.squared_speed = squared_norm(next.v);
-    next.dissipated = x.dissipated -
-                      h / 4 * ((x.v + half_).dot(x.friction) + (half_ + next.v).dot(next.friction));
+    if (options().compensated) {
+      add_quotient(x.v, h, x.f, mass, predicted_);
+      v_.add_quotient(x.v, h / 2, x.f, mass, half_);
+      q_.add_scaled(x.q, h, half_, next.q);
+      force({next.t, next.q, predicted_}, next.f);
+      v_.add_quotient(half_, h / 2, next.f, mass, next.v);
+      next.squared_speed = squared_norm(next.v);
+    } else {
+      DampedKicks kicks({x.q, x.v, x.f, mass}, h, {next.q, half_, predicted_, next.f, next.v});
+      next.squared_speed = force_beside({next.t, next.q, predicted_}, next.f, kicks);
+    }
+    take_friction(next.friction);
+    next.dissipated = x.dissipated - h / 4 *
+                                         (product_with_sum(x.v, half_, x.friction) +
+                                          product_with_sum(half_, next.v, next.friction));
     return Outcome::reached_end;
   }
 

@@ -181,6 +181,43 @@ BOOST_AUTO_TEST_CASE(a_node_with_fewer_unknowns_shifts_no_weights) {
   }
 }
 
+// Dashpots beside the springs, also where a spring has no length in the midst of a grid: there its
+// dashpot resists in all directions.
+BOOST_AUTO_TEST_CASE(damped_forces_are_the_plain_sums_on_grids) {
+  for (const int dimension : {2, 3}) {
+    for (const auto& order : {in_order(21 * 21), shuffled(21 * 21)}) {
+      for (const bool folds : {false, true}) {
+        for (const double quartic : {0.0, 10.0}) {
+          Grid g = grid(dimension, 21, order);
+          for (std::size_t e = 0; e < g.network.links.size(); ++e) {
+            g.network.links[e].law.damping = static_cast<double>(e % 3);
+            g.network.links[e].law.quartic = quartic;
+          }
+          const auto& link = g.network.links[g.network.links.size() / 2 + 1];
+          if (folds) {
+            g.q.segment(dimension * link.j, dimension) = g.q.segment(dimension * link.i, dimension);
+          }
+          const Vec v = 3 * (7 * g.q).array().sin();
+          const auto plain = make_mass_spring(g.network, Forces::spring_by_spring),
+                     fast = make_mass_spring(g.network, Forces::by_vectors);
+          Vec f(v.size()), friction = f, expected_f = f, expected = f;
+          BOOST_TEST(
+              (offered(fast->damping()).damped_force({0, g.q, v}, f, friction, nullptr) == 0.0));
+          plain->force({0, g.q, v}, expected_f);
+          offered(plain->damping()).friction({0, g.q, v}, expected);
+          // Eight springs of 3 m: 100 N/m and 90 N, and dashpots of 2 N s/m and 10 m/s, or of 20
+          // m/s where the spring is shorter.
+          BOOST_TEST(distance(friction, expected) < 8 * 40 * 10 * eps);
+          BOOST_TEST(distance(f, expected_f) < 8 * (340 + 40 * quartic) * 10 * eps);
+          BOOST_TEST(expected.lpNorm<Eigen::Infinity>() > 1);
+          const double around = friction.segment(dimension * link.i, dimension).norm();
+          BOOST_TEST(around > 0);
+        }
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(they_are_the_same_to_the_bit_with_any_number_of_threads) {
   const int before = omp_get_max_threads();
   for (const auto& order : {in_order(150 * 150), shuffled(150 * 150)}) {

@@ -3,6 +3,7 @@
 #include "qddot/integrators/counts.hpp"
 #include "qddot/model/beside_force.hpp"
 #include "qddot/model/capabilities.hpp"
+#include "qddot/model/vector_updates.hpp"
 
 namespace qddot {
 
@@ -31,18 +32,26 @@ class CountedSystem {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
     if (!damping_ || at.v.size() == 0) return part.force(at, f);
+    friction_.resize(f.size());
+    const Damping* damping = part.damping();
+    if (damping && damping->damped_force(at, f, friction_, nullptr)) {
+      power_ = -product(friction_, at.v);
+      return;
+    }
     part.force({at.t, at.q}, f);
-    if (const Damping* damping = part.damping()) {
+    if (damping) {
       set_friction(*damping, at);
       f += friction_;
     } else {
-      friction_.setZero(f.size());
+      friction_.setZero();
       power_ = 0;
     }
   }
-  // f_d [N] of the last force at velocities v, and the power v'Cv [W] that it took; zero if the
-  // system has no Damping.
+  // f_d [N] of the last force at velocities v, and the power v'Cv [W] that it took, of force()
+  // alone; zero if the system has no Damping.
   const Vec& friction() const { return friction_; }
+  // The same; this may change it for a vector of any content, in place of a copy.
+  Vec& friction() { return friction_; }
   double power() const { return power_; }
   // v'Cv [W] of a system with Damping; friction() is then that of this place.
   double power(const At& at) {
@@ -60,9 +69,17 @@ class CountedSystem {
   // The same with work beside it (see System::force_beside). The time of that work is not a
   // force's, so a timed run does it before and after.
   double force_beside(const At& at, MutableVec f, BesideForce& beside) {
-    if (!clock_) {
+    const bool is_damped = damping_ && at.v.size() > 0;
+    if (!clock_ && !is_damped) {
       ++counts.force_evaluations;
       return system_.force_beside(at, f, beside);
+    }
+    if (!clock_) {
+      friction_.resize(f.size());
+      if (const auto sum = damping_->damped_force(at, f, friction_, &beside)) {
+        ++counts.force_evaluations;
+        return *sum;
+      }
     }
     beside.before(0, system_.size());
     force(at, f);
@@ -108,7 +125,7 @@ class CountedSystem {
   void set_friction(const Damping& damping, const At& at) {
     friction_.resize(at.q.size());
     damping.friction(at, friction_);
-    power_ = -friction_.dot(at.v);
+    power_ = -product(friction_, at.v);
   }
 
   const System& system_;

@@ -98,6 +98,14 @@ class Damping {
   virtual ~Damping() = default;
   // Writes f_d = -C(q) v [N] into `f`; q, v, f: n.
   virtual void friction(const At& at, MutableVec f) const = 0;
+  // Writes f(q) + f_d into `f` and f_d into `friction` in one pass, with work beside it if `beside`
+  // is not nullptr. Returns the sum of that work, see System::force_beside; or nothing, and does
+  // nothing, if the system has no such pass.
+  virtual std::optional<double> damped_force(const At& /*at*/, MutableVec /*f*/,
+                                             MutableVec /*friction*/,
+                                             BesideForce* /*beside*/) const {
+    return {};
+  }
   // Writes C(q) [N s/m] into `c`, which must have the pattern of System::stiffness_pattern().
   virtual void damping_matrix(const At& at, SymmetricMatrix& c) const = 0;
   // Whether C is the same at every q.

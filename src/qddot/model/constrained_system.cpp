@@ -42,6 +42,15 @@ void ConstrainedSystem::friction(const At& at, MutableVec f) const {
   for (const Index i : unknowns_) f[i] = 0;
 }
 
+// Work beside it would see forces on held unknowns.
+std::optional<double> ConstrainedSystem::damped_force(const At& at, MutableVec f,
+                                                      MutableVec friction,
+                                                      BesideForce* beside) const {
+  if (beside || !damping_->damped_force(at, f, friction, nullptr)) return {};
+  for (const Index i : unknowns_) f[i] = friction[i] = 0;
+  return 0;
+}
+
 void ConstrainedSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
   damping_->damping_matrix(at, c);
   clear_held(c);

@@ -69,6 +69,18 @@ class MassSpring final : public CapableSystem {
     if (is_damped() && at.v.size() > 0) add_friction(at, f);
   }
 
+  std::optional<double> damped_force(const At& at, MutableVec f, MutableVec friction,
+                                     BesideForce* beside) const override {
+    // Air would come after the work beside.
+    if (!by_node_ || !has_dashpots_ || (beside && air_damping_ > 0)) return {};
+    const double sum = by_node_->sum_damped_forces(at.q, at.v, f, friction, beside);
+    if (air_damping_ > 0) {
+      add_air(at, f);
+      add_air(at, friction);
+    }
+    return sum;
+  }
+
   double force_beside(const At& at, MutableVec f, BesideForce& beside) const override {
     if (by_node_ && (!is_damped() || at.v.size() == 0)) {
       return by_node_->sum_forces(at.q, f, beside);
@@ -140,12 +152,17 @@ class MassSpring final : public CapableSystem {
   bool is_conservative() const override { return !is_damped(); }
   const Damping* damping() const override { return is_damped() ? this : nullptr; }
   void friction(const At& at, MutableVec f) const override {
-    f.setZero();
-    add_friction(at, f);
+    if (by_node_ && has_dashpots_) {
+      by_node_->sum_friction(at.q, at.v, f);
+      if (air_damping_ > 0) add_air(at, f);
+    } else {
+      f.setZero();
+      add_friction(at, f);
+    }
   }
   void damping_matrix(const At& at, SymmetricMatrix& c) const override {
-    if (dashpots_) {
-      dashpots_->material_stiffness(at, c);
+    if (has_dashpots_) {
+      for_stiffness().dashpots->material_stiffness(at, c);
       c.coeffs() = -c.coeffs();
     } else {
       c.coeffs().setZero();
@@ -154,13 +171,15 @@ class MassSpring final : public CapableSystem {
   }
   bool bound_damping(SymmetricMatrix& l) const override {
     l.coeffs().setZero();
-    if (dashpots_) dashpots_->assemble_laplacian(l);
+    if (has_dashpots_) for_stiffness().dashpots->assemble_laplacian(l);
     add_air(l);
     return true;
   }
-  bool damping_is_constant() const override { return !dashpots_ || D == 1 || !has_rest_lengths_; }
+  bool damping_is_constant() const override {
+    return !has_dashpots_ || D == 1 || !has_rest_lengths_;
+  }
   double air_damping() const override { return air_damping_; }
-  bool has_dashpots() const override { return dashpots_ != nullptr; }
+  bool has_dashpots() const override { return has_dashpots_; }
   std::optional<double> damping_time() const override { return damping_time_; }
 
   const SplitStiffness* split_stiffness() const override { return this; }
@@ -218,6 +237,9 @@ class MassSpring final : public CapableSystem {
   struct ForStiffness {
     StiffnessBlocks<D> blocks;
     std::optional<StiffnessKernel<D>> columns;  // beside SpringsByNode
+    // C of a dashpot c is -K_m of a spring of stiffness c without a quartic term. All springs are
+    // in this system, so that its pattern is that of K. Empty without dashpots.
+    std::unique_ptr<const MassSpring> dashpots;
   };
 
   MassSpring(Network&& network, Forces forces, Layout<D> layout)
@@ -226,7 +248,7 @@ class MassSpring final : public CapableSystem {
         weight_(weights(network, layout_)),
         constant_energy_(network.constant_energy),
         air_damping_(network.air_damping) {
-    note_damping(network, forces);
+    note_damping(network);
     note_tension(network);
     directions_ = directions(network, layout_);
     if (forces == Forces::by_vectors ||
@@ -245,7 +267,7 @@ class MassSpring final : public CapableSystem {
                 .image_links = std::move(network.image_links)};
   }
 
-  bool is_damped() const { return dashpots_ || air_damping_ > 0; }
+  bool is_damped() const { return has_dashpots_ || air_damping_ > 0; }
 
   // Calls see(spring) for each spring of the network.
   template <class Springs, class See>
@@ -255,14 +277,12 @@ class MassSpring final : public CapableSystem {
     for (auto& spring : network.anchors) see(spring);
   }
 
-  // Sets dashpots_: C of a dashpot c is -K_m of a spring of stiffness c without a quartic term. All
-  // springs are in it, so that its pattern is that of K.
-  void note_damping(const Network& network, Forces forces) {
-    bool any = false, is_proportional = true;
+  void note_damping(const Network& network) {
+    bool is_proportional = true;
     double least = std::numeric_limits<double>::infinity(), most = 0;
     for_each_spring(network, [&](const auto& spring) {
       const SpringLaw& law = spring.law;
-      any = any || law.damping > 0;
+      has_dashpots_ = has_dashpots_ || law.damping > 0;
       if (law.stiffness == 0 && law.quartic == 0 && law.damping == 0) return;
       has_rest_lengths_ = has_rest_lengths_ || (law.damping > 0 && law.rest_length > 0);
       is_proportional =
@@ -272,46 +292,46 @@ class MassSpring final : public CapableSystem {
       most = std::max(most, time);
     });
     constexpr double roundings = 8 * machine_epsilon;
-    if (!any) {
+    if (!has_dashpots_) {
       damping_time_ = 0;
     } else if (is_proportional && most - least <= roundings * most) {
       damping_time_ = most;
     }
-    if (!any) return;
-    Network dashpots{.dimension = D,
-                     .node_mass = network.node_mass,
-                     .links = network.links,
-                     .anchors = network.anchors,
-                     .image_links = network.image_links,
-                     .zero_coordinates = network.zero_coordinates};
-    for_each_spring(dashpots, [](auto& spring) {
+  }
+
+  // See ForStiffness; `network` has the springs of this one.
+  std::unique_ptr<const MassSpring> dashpots_of(Network network) const {
+    network.node_mass.setOnes(layout_.nodes());  // of no effect on C
+    for_each_spring(network, [](auto& spring) {
       spring.law = {.stiffness = spring.law.damping, .rest_length = spring.law.rest_length};
       spring.holds = Holds::always;
       spring.direction = 0;
     });
-    dashpots_ = std::make_unique<MassSpring>(std::move(dashpots), forces);
+    const Forces forces = by_node_ ? Forces::by_vectors : Forces::spring_by_spring;
+    return std::unique_ptr<const MassSpring>(new MassSpring(std::move(network), forces, layout_));
   }
 
   void add_friction(const At& at, MutableVec f) const {
-    if (dashpots_) dashpots_->add_dashpots(at.q, at.v, f);
-    if (air_damping_ > 0) f -= air_damping_ * mass().cwiseProduct(at.v);
+    if (by_node_ && has_dashpots_) {
+      Vec friction(size());
+      by_node_->sum_friction(at.q, at.v, friction);
+      f += friction;
+    } else if (has_dashpots_) {
+      springs_->add_forces(
+          [&](const auto& spring) {
+            return dashpot_force(spring.law, springs_->between(at.q, spring),
+                                 springs_->apart(at.v, spring));
+          },
+          f);
+    }
+    if (air_damping_ > 0) add_air(at, f);
   }
+  void add_air(const At& at, MutableVec f) const { f -= air_damping_ * mass().cwiseProduct(at.v); }
   void add_air(SymmetricMatrix& c) const {
     for (Index i = 0; i < size() && air_damping_ > 0; ++i) {
       // The diagonal entry is the first of its column.
       c.valuePtr()[c.outerIndexPtr()[i]] += air_damping_ * mass()[i];
     }
-  }
-  // Adds the forces of the dashpots whose constants are the stiffnesses of this network.
-  void add_dashpots(const VecView& q, const VecView& v, MutableVec f) const {
-    if (by_node_) return by_node_->add_dashpots(q, v, f);
-    springs_->add_forces(
-        [&](const auto& spring) {
-          SpringLaw law{.rest_length = spring.law.rest_length};
-          law.damping = spring.law.stiffness;
-          return dashpot_force(law, springs_->between(q, spring), springs_->apart(v, spring));
-        },
-        f);
   }
 
   void note_laws(const Network& network) {
@@ -366,8 +386,9 @@ class MassSpring final : public CapableSystem {
       const SpringLists<D>& springs = lists();
       const Network whole = whole_network();
       ForStiffness& own =
-          for_stiffness_.emplace(ForStiffness{{whole, layout_, springs}, std::nullopt});
+          for_stiffness_.emplace(ForStiffness{{whole, layout_, springs}, std::nullopt, nullptr});
       if (by_node_) own.columns.emplace(whole, layout_, *by_node_, own.blocks.pattern());
+      if (has_dashpots_) own.dashpots = dashpots_of(whole);
       // The lists hold the same springs.
       links_ = {};
       network_.image_links = {};
@@ -420,8 +441,8 @@ class MassSpring final : public CapableSystem {
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
   double constant_energy_, air_damping_;
-  std::unique_ptr<const MassSpring> dashpots_;  // see note_damping; empty without any
-  bool has_rest_lengths_ = false;               // of springs with dashpots
+  bool has_dashpots_ = false;
+  bool has_rest_lengths_ = false;  // of springs with dashpots
   std::optional<double> damping_time_;
   bool linear_ = false;
   Index kinks_ = 0;

@@ -34,8 +34,10 @@ void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out) {
   kernels::vector_kernels().add_scaled(x.data(), c, z.data(), out.data(), x.size());
 }
 
-void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m, MutableVec out) {
-  kernels::vector_kernels().add_quotient(x.data(), c, f.data(), masses(m), out.data(), x.size());
+void add_quotient(const VecView& x, Index first, Index end, double c, const VecView& f,
+                  const Mass& m, MutableVec out) {
+  kernels::vector_kernels().add_quotient(x.data() + first, c, f.data() + first, masses(m, first),
+                                         out.data() + first, end - first);
 }
 
 void kick_and_drift(const Motion& motion, Index first, Index end, double c0, double c, double h,
@@ -44,6 +46,14 @@ void kick_and_drift(const Motion& motion, Index first, Index end, double c0, dou
   kernels::vector_kernels().kick_and_drift(q.data() + first, v.data() + first, f.data() + first,
                                            masses(m, first), c0, c, h, q_next.data() + first,
                                            w.data() + first, end - first);
+}
+
+void half_kick_and_drift(const Motion& motion, Index first, Index end, double h, MutableVec q_next,
+                         MutableVec w, MutableVec kicked) {
+  const auto& [q, v, f, m] = motion;
+  kernels::vector_kernels().half_kick_and_drift(
+      q.data() + first, v.data() + first, f.data() + first, masses(m, first), h,
+      q_next.data() + first, w.data() + first, kicked.data() + first, end - first);
 }
 
 void divide(const VecView& f, const Mass& m, MutableVec out) {
@@ -87,6 +97,14 @@ void step_by_history(const HistoryStep& step, const VecView& f, const VecView& c
 
 double squared_norm(const VecView& x) {
   return kernels::vector_kernels().squared_norm(x.data(), x.size());
+}
+
+double product(const VecView& a, const VecView& b) {
+  return kernels::vector_kernels().product(a.data(), b.data(), a.size());
+}
+
+double product_with_sum(const VecView& a, const VecView& b, const VecView& c) {
+  return kernels::vector_kernels().product_with_sum(a.data(), b.data(), c.data(), a.size());
 }
 
 double squared_norm_of_kicked(const VecView& v, Index first, Index end, double c, const VecView& f,

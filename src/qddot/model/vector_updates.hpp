@@ -10,8 +10,13 @@ namespace qddot {
 
 // out = x + c z
 void add_scaled(const VecView& x, double c, const VecView& z, MutableVec out);
-// out = x + c f/m, entry by entry.
-void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m, MutableVec out);
+// out = x + c f/m, entry by entry; of all unknowns or of [first, end).
+void add_quotient(const VecView& x, Index first, Index end, double c, const VecView& f,
+                  const Mass& m, MutableVec out);
+inline void add_quotient(const VecView& x, double c, const VecView& f, const Mass& m,
+                         MutableVec out) {
+  add_quotient(x, 0, out.size(), c, f, m, out);
+}
 // Two kicks and a drift of the unknowns [first, end): w = (v + c0 f/m) + c f/m, `q_next` = q + h w.
 struct Motion {
   const Vec &q, &v, &f;
@@ -23,6 +28,10 @@ inline void kick_and_drift(const Motion& motion, double c0, double c, double h, 
                            MutableVec w) {
   kick_and_drift(motion, 0, motion.q.size(), c0, c, h, q_next, w);
 }
+// Half a kick and a drift of the unknowns [first, end), and the velocity of a whole kick:
+// w = v + h/2 f/m, `q_next` = q + h w and `kicked` = v + h f/m.
+void half_kick_and_drift(const Motion& motion, Index first, Index end, double h, MutableVec q_next,
+                         MutableVec w, MutableVec kicked);
 // out = f/m and out = a b, entry by entry.
 void divide(const VecView& f, const Mass& m, MutableVec out);
 void divide(const VecView& f, const VecView& m, MutableVec out);
@@ -48,6 +57,9 @@ void step_by_history(const HistoryStep& step, const VecView& f, const VecView& c
                      const VecView& d, MutableVec u_0, MutableVec d_next, MutableVec q_next);
 // |x|^2
 double squared_norm(const VecView& x);
+// a.b and (a + b).c
+double product(const VecView& a, const VecView& b);
+double product_with_sum(const VecView& a, const VecView& b, const VecView& c);
 // |v + c f/m|^2, of all unknowns or of [first, end).
 double squared_norm_of_kicked(const VecView& v, Index first, Index end, double c, const VecView& f,
                               const Mass& m);

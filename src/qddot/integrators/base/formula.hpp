@@ -59,6 +59,8 @@ class Formula {
   }
   void force(const System& part, const At& at, MutableVec f) { run_.counted().force(part, at, f); }
   const Vec& friction() const { return run_.counted().friction(); }
+  // Moves that friction into a vector, in place of a copy.
+  void take_friction(Vec& to) { to.swap(run_.counted().friction()); }
   double power() const { return run_.counted().power(); }
   double power(const At& at) { return run_.counted().power(at); }
   void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {

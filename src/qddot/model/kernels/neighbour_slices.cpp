@@ -48,6 +48,7 @@ class Slicer {
     for (const SpringLaw& law : neighbours.laws.values()) {
       if (law.quartic > 0) result_.law_vectors = 3;
       if (law.rest_length > 0) result_.law_vectors = std::max(result_.law_vectors, 2);
+      has_dashpots_ = has_dashpots_ || law.damping > 0;
     }
   }
 
@@ -110,17 +111,21 @@ class Slicer {
       const int e = slot.neighbour[t];
       laws[t] = e < 0 ? &none : &neighbours_.laws[rows_[t][e].law];
     }
-    const auto place = [&](int vector, double SpringLaw::*number) {
-      if (vector >= result_.law_vectors) return 0;
+    const auto place_of = [&](double SpringLaw::*number) {
       LawVector numbers;
       for (int t = 0; t < slice_rows; ++t) numbers[t] = laws[t]->*number;
       return slice_rows * laws_.number(numbers);
     };
+    const auto place = [&](int vector, double SpringLaw::*number) {
+      return vector < result_.law_vectors ? place_of(number) : 0;
+    };
+    if (has_dashpots_) result_.slot_dashpots.push_back(place_of(&SpringLaw::damping));
     result_.slot_laws.push_back({place(0, &SpringLaw::stiffness), place(1, &SpringLaw::rest_length),
                                  place(2, &SpringLaw::quartic)});
   }
 
   const Neighbours& neighbours_;
+  bool has_dashpots_ = false;
   std::vector<int> place_;  // of each point
   RepeatedValues<LawVector> laws_;
   RowNeighbours rows_;

@@ -28,6 +28,9 @@ struct NeighbourSlices {
   // there once: those of a grid are few and stay in the nearest cache. Each slice has its slots of
   // one shift first, then its slots that gather.
   std::vector<SlotLaw> slot_laws;
+  // The constants of a slot's dashpots: places of `slice_rows` numbers likewise; empty if there are
+  // none.
+  std::vector<int> slot_dashpots;
   Vec laws;
   int law_vectors = 1;
   std::vector<char> gathered;  // of a slice: whether any slot gathers from its places

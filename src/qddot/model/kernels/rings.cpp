@@ -44,10 +44,11 @@ class ShiftSlots {
     return true;
   }
 
-  const SlotLaw& law_of(int slice, int s) const {
+  std::size_t slot_of(int slice, int s) const {
     const Slice& begin = slices_.slices[slice];
-    return slices_.slot_laws[begin.slot() + s - begin.shift];
+    return static_cast<std::size_t>(begin.slot() + s - begin.shift);
   }
+  const SlotLaw& law_of(int slice, int s) const { return slices_.slot_laws[slot_of(slice, s)]; }
 
  private:
   bool is_same(int slice, int s, int t, int other_slice, int opposite, int other_t) const {
@@ -56,7 +57,10 @@ class ShiftSlots {
       return slices_.laws[place + t] == slices_.laws[other_place + other_t];
     };
     const int vectors = slices_.law_vectors;
+    const std::vector<int>& dashpots = slices_.slot_dashpots;
     return have_same(law.stiffness, other.stiffness) &&
+           (dashpots.empty() ||
+            have_same(dashpots[slot_of(slice, s)], dashpots[slot_of(other_slice, opposite)])) &&
            (vectors < 2 || have_same(law.rest_length, other.rest_length)) &&
            (vectors < 3 || have_same(law.quartic, other.quartic));
   }
@@ -99,6 +103,8 @@ void list_jobs(const NeighbourSlices& slices, const ShiftSlots& slots, Rings& re
       const int row = slice * slice_rows, at = row & ring.mask;
       const int copy = at < slice_rows ? ring.begin + ring.mask + 1 + at : -1;
       result.jobs.push_back({row, slices.shifts[s], slots.law_of(slice, s), ring.begin + at, copy});
+      if (slices.slot_dashpots.empty()) continue;
+      result.job_dashpots.push_back(slices.slot_dashpots[slots.slot_of(slice, s)]);
     }
   }
   result.first_job.push_back(static_cast<int>(result.jobs.size()));

@@ -17,6 +17,7 @@ struct Rings {
   std::vector<Ring> rings;
   std::vector<RingUse> uses;  // of the slots of one shift
   std::vector<RingJob> jobs;
+  std::vector<int> job_dashpots;  // of each job, as NeighbourSlices::slot_dashpots
   std::vector<int> first_job;
   std::vector<RingTerm> terms;
   std::vector<int> first_term;

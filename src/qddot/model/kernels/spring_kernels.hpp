@@ -89,6 +89,17 @@ struct SpringTable {
   const char* gathered;  // of the slices: whether any slot gathers from their rows
 };
 
+// Dashpots along the springs: places of `slice_rows` constants c [N s/m] among the laws' numbers.
+struct DashpotTable {
+  const int* slots;  // of all slots
+  const int* jobs;   // of the rings' jobs
+  // Behind the numbers of all rings their memory has as many for the dashpots, from here on.
+  int first_number;
+  // Whether no spring of rest length zero has one. Only such a dashpot can resist across its
+  // spring.
+  bool are_directed;
+};
+
 // A constant part of the forces: n numbers. If it is the same for all nodes, `of_slice` has it for
 // the rows of one slice, else that is nullptr.
 struct Offset {
@@ -149,10 +160,17 @@ struct SpringKernels {
   // not.
   void (*stiffness_row_sums)(const SpringTable&, const Positions&, const Offset&, double* sums,
                              int from, int end);
-  // f = offset + the forces of dashpots whose constants are the springs' stiffnesses. `velocities`
-  // are laid out as positions, and zero at fixed points.
-  void (*dashpots)(const SpringTable&, const Positions&, const Positions& velocities, const Offset&,
-                   double* f, int from, int end);
+  // friction = offset + the forces of the rows' dashpots. `velocities` are laid out as positions,
+  // and zero at fixed points.
+  void (*friction)(const SpringTable&, const DashpotTable&, const Positions&,
+                   const Positions& velocities, const Offset&, double* friction, int from, int end);
+  // The same, and f = offset_of_f + the forces of the rows' springs and dashpots, as force().
+  // `met_no_length` is set where a spring with a dashpot has no length, and must be handed on like
+  // `rings` then.
+  void (*damped_force)(const SpringTable&, const DashpotTable&, const Positions&,
+                       const Positions& velocities, double* rings, bool continues,
+                       bool& met_no_length, const Offset& offset_of_f, double* f, const Offset&,
+                       double* friction, int from, int end);
 };
 
 // Returns the version in use for 1, 2 or 3 dimensions; nullptr if it has no such roots.

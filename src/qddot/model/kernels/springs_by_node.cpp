@@ -66,8 +66,11 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout,
       see(link.i, image_ends[e][0], link.law), see(link.j, image_ends[e][1], link.law);
     }
   };
-  slices_ = slice_neighbours(neighbours_of(nodes, for_each_end),
-                             static_cast<int>(points_.size() + images_.size()));
+  const Neighbours neighbours = neighbours_of(nodes, for_each_end);
+  for (const SpringLaw& law : neighbours.laws.values()) {
+    if (law.damping > 0 && law.rest_length == 0) dashpots_are_directed_ = false;
+  }
+  slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()));
   if (D > 1) rings_ = rings_of(slices_);
   gathered_points_.reserve(slices_.gathers.size());
   for (const int place : slices_.gathers) gathered_points_.push_back(point_stride<D> * place);
@@ -142,15 +145,27 @@ SpringTable SpringsByNode<D>::table() const {
 }
 
 template <int D>
+DashpotTable SpringsByNode<D>::dashpot_table() const {
+  return {.slots = slices_.slot_dashpots.data(),
+          .jobs = rings_.job_dashpots.data(),
+          .first_number = rings_.numbers,
+          .are_directed = dashpots_are_directed_};
+}
+
+template <int D>
 bool SpringsByNode<D>::uses_threads() const {
   const Index slots = std::ssize(slices_.shifts) + std::ssize(slices_.gathers) / slice_rows;
   return slots >= slots_worth_threads && !omp_in_parallel() && omp_get_max_threads() > 1;
 }
 
 template <int D>
-double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce* beside) const {
+double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce* beside,
+                                    Damped* damped) const {
   const SpringTable springs = table();
-  const Positions positions = memory();
+  const DashpotTable dashpots = dashpot_table();
+  const Positions positions = memory(), velocities = damped ? memory(1) : Positions{};
+  const Offset none = damped ? no_offset(damped->friction) : Offset{};
+  if (damped) place_resting_points(velocities);
   const int count = parts_.count();
   thread_local Vec of_parts;
   if (of_parts.size() < count) of_parts.resize(count);
@@ -163,18 +178,31 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
     kernels_->place(springs, q.data(), positions, parts_.parts[from].begin,
                     parts_.parts[end - 1].end);
     place_images(positions, from, end);
+    if (!damped) return;
+    kernels_->place(springs, damped->v.data(), velocities, parts_.parts[from].begin,
+                    parts_.parts[end - 1].end);
+    place_images(velocities, from, end);
   };
   // Sums parts [from, end). Of these, [placed, places_end) still have to be placed.
   const auto sum = [&](int from, int end, int placed, int places_end) {
     thread_local Vec memory;
-    if (memory.size() < rings_.numbers) memory.resize(rings_.numbers);
+    const Index numbers = damped ? 2 * rings_.numbers : rings_.numbers;
+    if (memory.size() < numbers) memory.resize(numbers);
+    bool met_no_length = false;
     const int at_once = end - from <= parts_in_cache ? parts_in_cache : parts_at_once;
     for (int first = from; first < end; first += at_once) {
       const int last = std::min(first + at_once, end) - 1;
       const int read_end = std::min(parts_.parts[last].read_end, places_end);
       if (placed < read_end) place(std::exchange(placed, read_end), read_end);
-      kernels_->force(springs, positions, memory.data(), first > from, offset(), f.data(),
-                      parts_.parts[first].begin, parts_.parts[last].end);
+      const int begin = parts_.parts[first].begin, slices_end = parts_.parts[last].end;
+      if (damped) {
+        kernels_->damped_force(springs, dashpots, positions, velocities, memory.data(),
+                               first > from, met_no_length, offset(), f.data(), none,
+                               damped->friction.data(), begin, slices_end);
+      } else {
+        kernels_->force(springs, positions, memory.data(), first > from, offset(), f.data(), begin,
+                        slices_end);
+      }
       for (int p = first; beside && p <= last; ++p) {
         sums[p] = beside->after(first_unknown_[p], first_unknown_[p + 1]);
       }
@@ -218,9 +246,15 @@ void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b, Mutab
 }
 
 template <int D>
-Offset SpringsByNode<D>::no_offset(MutableVec numbers) {
+Offset SpringsByNode<D>::no_offset(MutableVec numbers) const {
   static constexpr std::array<double, D * slice_rows> of_slice{};
-  numbers.setZero();
+  for (std::size_t slice = 0; slice < slice_unknowns_.size(); ++slice) {
+    if (slice_unknowns_[slice].order == Order::by_slice) continue;
+    const int first = static_cast<int>(slice) * D * slice_rows;
+    for (int e = first; e < first + D * slice_rows; ++e) {
+      if (unknowns_[e] >= 0) numbers[unknowns_[e]] = 0;
+    }
+  }
   return {numbers.data(), of_slice.data()};
 }
 
@@ -232,18 +266,30 @@ void SpringsByNode<D>::multiply_stiffness(const VecView& q, const VecView& x, Mu
 }
 
 template <int D>
-void SpringsByNode<D>::add_dashpots(const VecView& q, const VecView& v, MutableVec f) const {
+void SpringsByNode<D>::sum_friction(const VecView& q, const VecView& v, MutableVec friction) const {
   const Positions velocities = placed_beside(v);
-  const Offset own{f.data(), nullptr};
-  kernels_->dashpots(table(), placed(q, 0), velocities, own, f.data(), 0, slices_.count());
+  kernels_->friction(table(), dashpot_table(), placed(q, 0), velocities, no_offset(friction),
+                     friction.data(), 0, slices_.count());
+}
+
+template <int D>
+double SpringsByNode<D>::sum_damped_forces(const VecView& q, const VecView& v, MutableVec f,
+                                           MutableVec friction, BesideForce* beside) const {
+  Damped damped{v, friction};
+  return sum_forces(q, f, beside, &damped);
 }
 
 template <int D>
 Positions SpringsByNode<D>::placed_beside(const VecView& x) const {
   const Positions moved = placed(x, 1);
-  const int first = slices_.rows(), points = static_cast<int>(points_.size());
-  for (int place = first; place < first + points; ++place) place_extra(moved, place, {});
+  place_resting_points(moved);
   return moved;
+}
+
+template <int D>
+void SpringsByNode<D>::place_resting_points(const Positions& velocities) const {
+  const int first = slices_.rows(), points = static_cast<int>(points_.size());
+  for (int place = first; place < first + points; ++place) place_extra(velocities, place, {});
 }
 
 template <int D>

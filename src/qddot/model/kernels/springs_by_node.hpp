@@ -53,9 +53,13 @@ class SpringsByNode {
   void multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const;
   void sum_stiffness_rows(const VecView& q, MutableVec sums) const;
 
-  // Adds the forces of dashpots [N] at q and v to f. Their constants [N s/m] are the stiffnesses of
-  // this network's springs, which must have no quartic terms. q, v, f: n.
-  void add_dashpots(const VecView& q, const VecView& v, MutableVec f) const;
+  bool has_dashpots() const { return !slices_.slot_dashpots.empty(); }
+  // friction = the forces of the dashpots [N] at q and v, if there are any. q, v, friction: n.
+  void sum_friction(const VecView& q, const VecView& v, MutableVec friction) const;
+  // The same, and f = weight + the forces of springs and dashpots, in one pass, with work beside it
+  // unless that is nullptr.
+  double sum_damped_forces(const VecView& q, const VecView& v, MutableVec f, MutableVec friction,
+                           BesideForce* beside) const;
 
   // Calls action(positions at q, from, end) for slices [from, end) until all are done, in several
   // OpenMP threads if there are enough springs. The calls must not depend on each other.
@@ -74,8 +78,9 @@ class SpringsByNode {
   Offset offset() const {
     return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr};
   }
-  // Zeros, which are written to `numbers` (n) as well.
-  static Offset no_offset(MutableVec numbers);
+  // Zeros. They are written to `numbers` (n) as well, if they are read there.
+  Offset no_offset(MutableVec numbers) const;
+  DashpotTable dashpot_table() const;
   // Memory for all places: this thread's until the next call. There are two.
   Positions memory(int which = 0) const;
   // The same with all of them at q.
@@ -85,10 +90,17 @@ class SpringsByNode {
   // Places the points that are no nodes: those that are fixed, and the images of parts [from, end),
   // whose slices must have their places.
   void place_points(const Positions& positions) const;
+  void place_resting_points(const Positions& velocities) const;
   void place_images(const Positions& positions, int from, int end) const;
   void place_extra(const Positions& positions, int place, const std::array<double, D>& x) const;
 
-  double sum_forces(const VecView& q, MutableVec f, BesideForce* beside) const;
+  // Velocities, and what the dashpots' forces are written to.
+  struct Damped {
+    const VecView& v;
+    MutableVec& friction;
+  };
+  double sum_forces(const VecView& q, MutableVec f, BesideForce* beside,
+                    Damped* damped = nullptr) const;
   bool uses_threads() const;
   // Fills parts_ and what belongs to them.
   void divide_into_parts();
@@ -102,8 +114,9 @@ class SpringsByNode {
   NeighbourSlices slices_;
   Rings rings_;
   RingTable ring_table_{};
-  std::vector<int> gathered_points_;  // where the points of the slices' gathers begin
-  std::vector<int> unknowns_;         // D of each row
+  bool dashpots_are_directed_ = true;  // see DashpotTable
+  std::vector<int> gathered_points_;   // where the points of the slices' gathers begin
+  std::vector<int> unknowns_;          // D of each row
   std::vector<SliceUnknowns> slice_unknowns_;
   SliceParts parts_;
   std::vector<int> first_image_;    // of each part, and the end

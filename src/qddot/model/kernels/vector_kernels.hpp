@@ -23,6 +23,10 @@ struct VectorKernels {
   void (*kick_and_drift)(const double* q, const double* v, const double* f, const Masses& m,
                          double c0, double c, double h, double* q_next, double* w,
                          std::ptrdiff_t n);
+  // w = v + h/2 f/m, q' = q + h w and kicked = v + h f/m, number by number.
+  void (*half_kick_and_drift)(const double* q, const double* v, const double* f, const Masses& m,
+                              double h, double* q_next, double* w, double* kicked,
+                              std::ptrdiff_t n);
   // out = f/m and out = a b, number by number.
   void (*divide)(const double* f, const Masses& m, double* out, std::ptrdiff_t n);
   void (*multiply)(const double* a, const double* b, double* out, std::ptrdiff_t n);
@@ -39,6 +43,9 @@ struct VectorKernels {
                           double* d_next, double* q_next, std::ptrdiff_t n);
   // x_0^2 + x_1^2 + ...
   double (*squared_norm)(const double* x, std::ptrdiff_t n);
+  // a.b and (a + b).c
+  double (*product)(const double* a, const double* b, std::ptrdiff_t n);
+  double (*product_with_sum)(const double* a, const double* b, const double* c, std::ptrdiff_t n);
   // |v + c f/m|^2
   double (*squared_norm_of_kicked)(const double* v, double c, const double* f, const Masses& m,
                                    std::ptrdiff_t n);

@@ -98,7 +98,7 @@ void sum_mean_forces(const SpringTable& springs, const Positions& before, const 
       for (int a = 0; a < D; ++a) sum[a] = Lanes{};
       for_slots_of_two<D>(
           springs, slice, part, before, after,
-          [&](const Lanes(&d0)[D], const Lanes(&d1)[D], const Law& law)
+          [&](int, const Lanes(&d0)[D], const Lanes(&d1)[D], const Law& law)
               __attribute__((always_inline)) {
                 Lanes ratio;
                 if constexpr (law_vectors == 1) {

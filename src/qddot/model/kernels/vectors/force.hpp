@@ -67,8 +67,9 @@ void sum_forces(SpringTable springs, Positions positions, double* memory, bool c
     sum_forces_on_line<law_vectors>(springs, positions, offset, f, from, end);
   } else if (law_vectors > 1 && springs.rings) {
     const RingTable rings = *springs.rings;
+    NoDashpots none;
     sum_forces_by_rings<D, law_vectors, roots>(springs, rings, positions, memory, continues, offset,
-                                               f, from, end);
+                                               f, from, end, none);
   } else {
     sum_forces_apart<D, law_vectors, roots>(springs, positions, offset, f, from, end);
   }

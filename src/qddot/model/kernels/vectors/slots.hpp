@@ -54,15 +54,15 @@ template <int D, class AddShift, class AddGather>
   }
 }
 
-// Calls add(d0, d1, law) for every slot of a part of a slice, with the d of two positions;
-// likewise.
+// Calls add(slot, d0, d1, law) for every slot of a part of a slice, with the d of two positions;
+// likewise, but slots have their numbers among all.
 template <int D, class Add>
 [[gnu::always_inline]] inline void for_slots_of_two(const SpringTable& springs, int slice, int part,
                                                     const Positions& before, const Positions& after,
                                                     const Add& add) {
   const int row = slice * slice_rows + part * lanes;
   const Slice begin = springs.slices[slice], end = springs.slices[slice + 1];
-  const SlotLaw* law = springs.slot_laws + begin.slot();
+  int slot = begin.slot();
   Lanes x0[D], x1[D], d0[D], d1[D];
   for (int a = 0; a < D; ++a) {
     x0[a] = load(coordinate(before, a, row));
@@ -74,7 +74,8 @@ template <int D, class Add>
       d0[a] = load(coordinate(before, a, shifted)) - x0[a];
       d1[a] = load(coordinate(after, a, shifted)) - x1[a];
     }
-    add(d0, d1, law_of(springs, *law++, part));
+    add(slot, d0, d1, law_of(springs, springs.slot_laws[slot], part));
+    ++slot;
   }
   for (int s = begin.gather; s < end.gather; s += slice_rows) {
     const int* places = springs.gathers + s + part * lanes;
@@ -84,7 +85,8 @@ template <int D, class Add>
       d0[a] -= x0[a];
       d1[a] -= x1[a];
     }
-    add(d0, d1, law_of(springs, *law++, part));
+    add(slot, d0, d1, law_of(springs, springs.slot_laws[slot], part));
+    ++slot;
   }
 }
 

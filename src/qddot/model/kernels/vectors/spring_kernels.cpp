@@ -25,7 +25,8 @@ constexpr SpringKernels kernels() {
             .stiffness = stiffness<D, of_lengths>,
             .stiffness_product = stiffness_product<D, of_lengths>,
             .stiffness_row_sums = stiffness_row_sums<D, of_lengths>,
-            .dashpots = dashpots<D>};
+            .friction = friction<D>,
+            .damped_force = damped_force<D, none_on_line>};
   } else {
     return {};
   }

@@ -22,7 +22,7 @@ void sum_products(const SpringTable& springs, const Positions& positions, const 
       for (int a = 0; a < D; ++a) sum[a] = Lanes{};
       for_slots_of_two<D>(
           springs, slice, part, positions, moved,
-          [&](const Lanes(&d)[D], const Lanes(&w)[D], const Law& law)
+          [&](int, const Lanes(&d)[D], const Lanes(&w)[D], const Law& law)
               __attribute__((always_inline)) {
                 const Slopes slope =
                     slopes<D, law_vectors, in_use>(squared_length<D>(d), law, whole, range);

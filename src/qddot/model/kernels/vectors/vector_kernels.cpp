@@ -44,6 +44,27 @@ void kick_and_drift(const double* q, const double* v, const double* f, const Mas
       });
 }
 
+void half_kick_and_drift(const double* q, const double* v, const double* f, const Masses& masses,
+                         double h, double* q_next, double* w, double* kicked, std::ptrdiff_t n) {
+  with_quotients(
+      masses, [&](const auto& quotient) __attribute__((always_inline)) {
+        std::ptrdiff_t i = 0;
+        for (; i + lanes <= n; i += lanes) {
+          const Lanes a = quotient(load(f + i), i), own = load(v + i);
+          const Lanes half = add_product(h / 2 + Lanes{}, a, own);
+          store(w + i, half);
+          store(kicked + i, add_product(h + Lanes{}, a, own));
+          store(q_next + i, add_product(h + Lanes{}, half, load(q + i)));
+        }
+        for (; i < n; ++i) {
+          const double a = f[i] / masses.m[i];
+          w[i] = add_product(h / 2, a, v[i]);
+          kicked[i] = add_product(h, a, v[i]);
+          q_next[i] = add_product(h, w[i], q[i]);
+        }
+      });
+}
+
 void divide(const double* f, const Masses& masses, double* out, std::ptrdiff_t n) {
   with_quotients(
       masses, [&](const auto& quotient) __attribute__((always_inline)) {
@@ -148,20 +169,20 @@ void step_by_history(const double* f, const double* c, const double* const* u, c
   }
 }
 
-// Sums of squares are `sums` partial sums, each of every `sums`-th number, for any width of
+// Sums over all numbers are `sums` partial sums, each of every `sums`-th number, for any width of
 // vectors: so all processors round them alike.
 constexpr int sums = 32, vectors_of_sums = sums / lanes;
 
-// number(i) and lanes_at(i) return the numbers to square: one, or a vector of them.
-template <class LanesAt, class Number>
-[[gnu::always_inline]] inline double sum_of_squares(std::ptrdiff_t n, const LanesAt& lanes_at,
-                                                    const Number& number) {
+// add_lanes(i, sum) and add_number(i, sum) return a sum and what number i and, in a vector, the
+// next ones add to it.
+template <class AddLanes, class AddNumber>
+[[gnu::always_inline]] inline double sum_of(std::ptrdiff_t n, const AddLanes& add_lanes,
+                                            const AddNumber& add_number) {
   Lanes columns[vectors_of_sums] = {};
   std::ptrdiff_t i = 0;
   for (; i + sums <= n; i += sums) {
     unroll<vectors_of_sums>([&]<int w>() __attribute__((always_inline)) {
-      const Lanes some = lanes_at(i + w * lanes);
-      columns[w] = add_product(some, some, columns[w]);
+      columns[w] = add_lanes(i + w * lanes, columns[w]);
     });
   }
   // Eight sums of the 32, then their sum.
@@ -173,17 +194,47 @@ template <class LanesAt, class Number>
   }
   double total = 0;
   for (const double part : eight) total += part;
-  for (; i < n; ++i) {
-    const double some = number(i);
-    total = add_product(some, some, total);
-  }
+  for (; i < n; ++i) total = add_number(i, total);
   return total;
+}
+
+// number(i) and lanes_at(i) return the numbers to square: one, or a vector of them.
+template <class LanesAt, class Number>
+[[gnu::always_inline]] inline double sum_of_squares(std::ptrdiff_t n, const LanesAt& lanes_at,
+                                                    const Number& number) {
+  return sum_of(
+      n,
+      [&](std::ptrdiff_t i, Lanes sum) __attribute__((always_inline)) {
+        const Lanes some = lanes_at(i);
+        return add_product(some, some, sum);
+      },
+      [&](std::ptrdiff_t i, double sum) {
+        const double some = number(i);
+        return add_product(some, some, sum);
+      });
 }
 
 double squared_norm(const double* x, std::ptrdiff_t n) {
   return sum_of_squares(
       n, [&](std::ptrdiff_t i) __attribute__((always_inline)) { return load(x + i); },
       [&](std::ptrdiff_t i) { return x[i]; });
+}
+
+double product(const double* a, const double* b, std::ptrdiff_t n) {
+  return sum_of(
+      n,
+      [&](std::ptrdiff_t i, Lanes sum)
+          __attribute__((always_inline)) { return add_product(load(a + i), load(b + i), sum); },
+      [&](std::ptrdiff_t i, double sum) { return add_product(a[i], b[i], sum); });
+}
+
+double product_with_sum(const double* a, const double* b, const double* c, std::ptrdiff_t n) {
+  return sum_of(
+      n,
+      [&](std::ptrdiff_t i, Lanes sum) __attribute__((always_inline)) {
+        return add_product(load(a + i) + load(b + i), load(c + i), sum);
+      },
+      [&](std::ptrdiff_t i, double sum) { return add_product(a[i] + b[i], c[i], sum); });
 }
 
 double squared_norm_of_kicked(const double* v, double c, const double* f, const Masses& masses,
@@ -220,11 +271,14 @@ extern const VectorKernels vector_kernels;
 const VectorKernels vector_kernels = {.add_scaled = add_scaled,
                                       .add_quotient = add_quotient,
                                       .kick_and_drift = kick_and_drift,
+                                      .half_kick_and_drift = half_kick_and_drift,
                                       .divide = divide,
                                       .multiply = multiply,
                                       .add_combination = add_combination,
                                       .step_by_history = step_by_history,
                                       .squared_norm = squared_norm,
+                                      .product = product,
+                                      .product_with_sum = product_with_sum,
                                       .squared_norm_of_kicked = squared_norm_of_kicked,
                                       .squared_error = squared_error};
 
