@@ -27,9 +27,7 @@ class SymplecticEuler final : public Formula {
     v_.add_quotient(now.v, h, f_, system().mass(), next.v);
     q_.add_scaled(now.q, h, next.v, next.q);
     // The kick's work of friction: h times the mean of the velocities before and after it.
-    if (is_damped()) {
-      next.dissipated = now.dissipated - h / 2 * product_with_sum(now.v, next.v, friction());
-    }
+    if (is_damped()) next.dissipated = now.dissipated - h / 2 * (now.v + next.v).dot(friction());
     return Outcome::reached_end;
   }
 

@@ -110,7 +110,8 @@ class Verlet final : public Formula {
     return Outcome::reached_end;
   }
 
-  Vec predicted_{system().size()}, half_{system().size()};  // velocities
+  // Velocities, with damping.
+  Vec predicted_{is_damped() ? system().size() : 0}, half_{predicted_.size()};
   CompensatedSum q_{options().compensated, system().size()};
   CompensatedSum v_{options().compensated, system().size()};
 };

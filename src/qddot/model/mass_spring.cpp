@@ -251,17 +251,18 @@ class MassSpring final : public CapableSystem {
     note_damping(network);
     note_tension(network);
     directions_ = directions(network, layout_);
-    if (forces == Forces::by_vectors ||
-        (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
-      by_node_.emplace(network, layout_, weight_);
-    } else {
-      springs_.emplace(network, layout_);
-    }
     note_laws(network);
     if (network.offers_split) offer_split(network, forces);
     entries_ = D * (D + 1) / 2 * layout_.nodes() +
                D * D * (std::ssize(network.links) + std::ssize(network.image_links));
     links_ = CompactLinks(network.links);
+    if (forces == Forces::by_vectors ||
+        (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
+      network.links = {};  // most of the memory of many nodes
+      by_node_.emplace(network, links_, layout_, weight_);
+    } else {
+      springs_.emplace(network, layout_);
+    }
     network_ = {.dimension = D,
                 .anchors = std::move(network.anchors),
                 .image_links = std::move(network.image_links)};

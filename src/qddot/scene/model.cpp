@@ -19,7 +19,7 @@ template <class Action>
 void for_falling(const std::vector<Part>& parts, const State& state, const Action& action) {
   Index at = 0;
   for (const Part& part : parts) {
-    const Index n = part.initial().q.size();
+    const Index n = part.unknowns();
     if (part.fall().moves()) {
       action(part.fall(), part.moments(state.q.segment(at, n), state.v.segment(at, n)));
     }
@@ -43,7 +43,7 @@ void expand_into(const Pieces& pieces, const State& state, bool falls, std::vect
   if (pieces.is_own) return expand_own(pieces.dimension, state, nodes);
   Index at = 0;
   for (const Part& part : pieces.parts) {
-    const Index n = part.initial().q.size();
+    const Index n = part.unknowns();
     const Fall fall = falls ? part.fall() : Fall{};
     part.expand(state.q.segment(at, n), state.v.segment(at, n), fall.displacement(state.t),
                 fall.velocity_at(state.t), nodes);
@@ -106,7 +106,7 @@ std::vector<double> Model::largest_by_part(const Vec& x) const {
   if (!pieces_->series.empty()) return largest;
   Index at = 0;
   for (const Part& part : pieces_->parts) {
-    const Index n = part.initial().q.size();
+    const Index n = part.unknowns();
     largest.push_back(part.largest(x.segment(at, n)));
     at += n;
   }
@@ -200,7 +200,7 @@ std::vector<std::vector<std::size_t>> Model::nodes_by_part() const {
 std::vector<Index> Model::unknowns_by_part() const {
   if (pieces_->is_own) return {pieces_->system->size()};
   std::vector<Index> unknowns;
-  for (const Part& part : pieces_->parts) unknowns.push_back(part.initial().q.size());
+  for (const Part& part : pieces_->parts) unknowns.push_back(part.unknowns());
   return unknowns;
 }
 

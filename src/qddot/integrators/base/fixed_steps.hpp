@@ -32,7 +32,8 @@ class FixedSteps final : public Stepper {
     formula_.begin(state, x_);
     x_.t = state.t;
     next_ = x_;
-    if constexpr (!is_state) shown_ = shown_next_ = state;
+    if constexpr (!is_state) shown_ = state;
+    if (!is_state && run_.checks_velocities()) shown_next_ = state;
   }
 
   bool has_passed(double t) override {

@@ -16,7 +16,8 @@ constexpr int parts_in_cache = 24, parts_at_once = 4;
 }  // namespace
 
 template <int D>
-SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout, const Vec& weight)
+SpringsByNode<D>::SpringsByNode(const Network& network, const CompactLinks& links,
+                                const Layout<D>& layout, const Vec& weight)
     : weight_(weight) {
   const int nodes = static_cast<int>(layout.nodes());
   // If a node has fewer unknowns, slices begin at other axes than the first.
@@ -56,8 +57,7 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const Layout<D>& layout,
     image_ends.push_back({image_of(link.j, link.mirror), image_of(link.i, link.mirror)});
   }
   const auto for_each_end = [&](const auto& see) {
-    for (const auto& link : network.links)
-      see(link.i, link.j, link.law), see(link.j, link.i, link.law);
+    links.for_each([&](int i, int j, const SpringLaw& law) { see(i, j, law), see(j, i, law); });
     for (std::size_t e = 0; e < anchored_to.size(); ++e) {
       see(network.anchors[e].i, anchored_to[e], network.anchors[e].law);
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "qddot/model/beside_force.hpp"
+#include "qddot/model/compact_links.hpp"
 #include "qddot/model/kernels/neighbour_slices.hpp"
 #include "qddot/model/kernels/rings.hpp"
 #include "qddot/model/kernels/slice_parts.hpp"
@@ -21,8 +22,10 @@ namespace qddot::kernels {
 template <int D>
 class SpringsByNode {
  public:
-  // `weight` (n) [N] acts besides the springs; it must outlive this.
-  SpringsByNode(const Network& network, const Layout<D>& layout, const Vec& weight);
+  // `links` are those of the network. `weight` (n) [N] acts besides the springs; it must outlive
+  // this.
+  SpringsByNode(const Network& network, const CompactLinks& links, const Layout<D>& layout,
+                const Vec& weight);
 
   const NeighbourSlices& slices() const { return slices_; }
   // The D coordinates of a row; -1 - x for a coordinate that is always x and no unknown.

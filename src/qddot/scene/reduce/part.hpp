@@ -35,9 +35,12 @@ class Part {
   void make_system();
 
   const System& system() const { return *system_; }
-  // The state of its unknowns at the start.
-  const State& initial() const { return initial_; }
-  // Gives away the system; the rest remains.
+  // The number of its unknowns.
+  Index unknowns() const {
+    return layout_.empty() ? 0 : Index{layout_.back().first} + layout_.back().count;
+  }
+  // Give away the state of its unknowns at the start, and the system; the rest remains.
+  State take_initial() { return std::move(initial_); }
   std::unique_ptr<System> take_system() { return std::move(system_); }
 
   // Its mirrors, in coordinates from the part's origin.

@@ -160,15 +160,15 @@ void Steps::build(std::vector<PartMembers> parts) {
     Part& part = pieces_.parts.emplace_back(faithful_part(*drawn));
     systems.push_back(part.take_system());
     pieces_.static_energy += part.energy_of_origin();
-    n += part.initial().q.size();
+    n += part.unknowns();
   }
   pieces_.initial = {0, Vec(n), Vec(n)};
   Index at = 0;
-  for (const Part& part : pieces_.parts) {
-    const Index own = part.initial().q.size();
-    pieces_.initial.q.segment(at, own) = part.initial().q;
-    pieces_.initial.v.segment(at, own) = part.initial().v;
-    at += own;
+  for (Part& part : pieces_.parts) {
+    const State own = part.take_initial();
+    pieces_.initial.q.segment(at, own.q.size()) = own.q;
+    pieces_.initial.v.segment(at, own.v.size()) = own.v;
+    at += own.q.size();
   }
   const auto falling = static_cast<std::size_t>(
       std::ranges::count_if(pieces_.parts, [](const Part& part) { return part.fall().moves(); }));
