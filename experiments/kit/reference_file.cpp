@@ -178,36 +178,40 @@ bool is_of(const nlohmann::json& file, const nlohmann::json& key) {
 }  // namespace
 
 nlohmann::json to_json(const Reference& r) {
-  return {{"made_by", r.made_by},
-          {"seconds", r.seconds},
-          {"certified_position", r.certified.position},
-          {"certified_velocity", r.certified.velocity},
-          {"certified_energy", r.certified.energy},
-          {"certified_digits",
-           {{"position", digits(r.certified.position)},
-            {"velocity", digits(r.certified.velocity)},
-            {"energy", digits(r.certified.energy)}}},
-          {"rounding_effect", r.rounding_effect},
-          {"perturbation_growth", r.perturbation_growth},
-          {"horizon", r.horizon},  // null where there is none
-          {"lyapunov", r.lyapunov},
-          {"modal_shares", list(r.modal_shares)},
-          {"modal_shares_floor", r.modal_shares_floor},
-          {"chaotic", r.is_chaotic()},
-          {"beyond_horizon", r.is_beyond_horizon()},
-          {"reduced_by_symmetry", r.is_reduced_by_symmetry},
-          {"out_of_symmetry", out_of_symmetry_to_json(r)},  // null where there is none to go out of
-          {"only_symmetric", r.is_only_symmetric()},
-          {"scales", scales_to_json(r.scales)},
-          {"energy", r.energy},
-          {"t", r.end.t},
-          {"q", list(r.end.q)},
-          {"v", list(r.end.v)}};
+  nlohmann::json json = {
+      {"made_by", r.made_by},
+      {"seconds", r.seconds},
+      {"certified_position", r.certified.position},
+      {"certified_velocity", r.certified.velocity},
+      {"certified_energy", r.certified.energy},
+      {"certified_digits",
+       {{"position", digits(r.certified.position)},
+        {"velocity", digits(r.certified.velocity)},
+        {"energy", digits(r.certified.energy)}}},
+      {"rounding_effect", r.rounding_effect},
+      {"perturbation_growth", r.perturbation_growth},
+      {"horizon", r.horizon},  // null where there is none
+      {"lyapunov", r.lyapunov},
+      {"modal_shares", list(r.modal_shares)},
+      {"modal_shares_floor", r.modal_shares_floor},
+      {"chaotic", r.is_chaotic()},
+      {"beyond_horizon", r.is_beyond_horizon()},
+      {"reduced_by_symmetry", r.is_reduced_by_symmetry},
+      {"out_of_symmetry", out_of_symmetry_to_json(r)},  // null where there is none to go out of
+      {"only_symmetric", r.is_only_symmetric()},
+      {"scales", scales_to_json(r.scales)},
+      {"energy", r.energy},
+      {"t", r.end.t},
+      {"q", list(r.end.q)},
+      {"v", list(r.end.v)}};
+  if (r.end.dissipated != 0) json["dissipated"] = r.end.dissipated;  // of damped scenes
+  return json;
 }
 
 Reference reference_from_json(const nlohmann::json& json) {
   Reference reference = reference_without_end(json);
-  reference.end = {json.at("t"), vector(json.at("q")), vector(json.at("v"))};
+  reference.end = {json.at("t"), vector(json.at("q")), vector(json.at("v")),
+                   number(json, "dissipated", 0)};
   reference.energy = json.at("energy");
   reference.scales = scales_from_json(json.at("scales"));
   reference.certified = {json.at("certified_position"), json.at("certified_velocity"),

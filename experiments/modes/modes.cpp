@@ -5,7 +5,8 @@
 //
 // modes.csv has the lowest and the highest modes by rank. A mode that grows instead of vibrating
 // has omega = -(growth rate); it has w^2 < 0, at a state that is no minimum of the energy. A mode
-// with w^2 = 0 within rounding has omega = 0.
+// with w^2 = 0 within rounding has omega = 0. Frequencies are those without damping; a damped scene
+// has the column zeta, each mode's own damping ratio.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -40,7 +41,8 @@ int main(int argc, char** argv) {
   auto scene = p.drawn_scene();
   p.out(
       "the folder for modes.csv (a mode that grows instead of vibrating has omega = -growth "
-      "rate), shapes.csv of the lowest ones, and springs.csv");
+      "rate; of a damped scene with the column zeta), shapes.csv of the lowest ones, and "
+      "springs.csv");
   auto count = p.whole("--count", 10, "number of modes at each end of the spectrum, 1 to 1000")
                    .within(1, most_modes);
   auto at = p.word("--at",
@@ -53,7 +55,7 @@ int main(int argc, char** argv) {
     const Model model(at_equilibrium ? settled(drawn, scene->name) : drawn,
                       Reductions::all_directions());
     require_folder(p.folder());
-    CsvFile table(p.folder() + "/modes.csv", {"mode", "omega", "frequency_hz"});
+    CsvFile table(p.folder() + "/modes.csv", spectrum_header(model));
     CsvFile shapes(p.folder() + "/shapes.csv", shape_header(drawn.dimension));
     CsvFile springs(p.folder() + "/springs.csv", {"i", "j"});
 

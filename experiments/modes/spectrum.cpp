@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,17 @@ constexpr int most_printed = 10;
 
 // Angular frequency [rad/s], or minus the rate of growth [1/s].
 double omega(double square) { return std::copysign(std::sqrt(std::abs(square)), square); }
+
+Vec damping_ratios(const Model& scene, const NaturalModes& modes) {
+  Vec zeta = Vec::Constant(modes.squares.size(), std::numeric_limits<double>::quiet_NaN());
+  for (Index j = 0; j < zeta.size(); ++j) {
+    const double w = omega(modes.squares[j]);
+    if (w > 0) {
+      zeta[j] = damping_ratio(scene.system(), scene.initial().q, modes.shapes.col(j), w);
+    }
+  }
+  return zeta;
+}
 
 }  // namespace
 
@@ -27,32 +39,51 @@ Spectrum::Spectrum(const Model& scene, Index count)
     if (rank < lowest.squares.size()) lowest.squares[rank] = 0;
     if (high >= 0) highest.squares[high] = 0;
   }
+  is_damped = scene.system().damping() != nullptr;
+  lowest_zeta = damping_ratios(scene, lowest);
+  highest_zeta = damping_ratios(scene, highest);
 }
 
 void print(const Spectrum& spectrum) {
-  fmt::print("{:>6}  {:>14}  {:>14}\n", "mode", "omega in rad/s", "frequency in Hz");
-  const auto row = [](Index rank, double square) {
+  fmt::print("{:>6}  {:>14}  {:>14}{}\n", "mode", "omega in rad/s", "frequency in Hz",
+             spectrum.is_damped ? "   damping ratio" : "");
+  const auto row = [&](Index rank, double square, double zeta) {
     const double w = omega(square);
-    fmt::print("{:>6}  {:>14.6g}  {:>14.6g}{}\n", rank, w, w / (2 * M_PI), w < 0 ? "  grows" : "");
+    const bool has_zeta = spectrum.is_damped && w > 0;
+    fmt::print("{:>6}  {:>14.6g}  {:>14.6g}{}{}\n", rank, w, w / (2 * M_PI),
+               has_zeta ? fmt::format("  {:>14.4g}", zeta) : "", w < 0 ? "  grows" : "");
   };
   const Vec &low = spectrum.lowest.squares, &high = spectrum.highest.squares;
   const Index shown = std::min<Index>(low.size(), most_printed);
-  for (Index j = 0; j < shown; ++j) row(j + 1, low[j]);
+  for (Index j = 0; j < shown; ++j) row(j + 1, low[j], spectrum.lowest_zeta[j]);
   if (shown < spectrum.finite) {
     fmt::print("{:>6}\n", "...");
-    row(spectrum.finite, high.size() > 0 ? high[high.size() - 1] : low[low.size() - 1]);
+    const bool has_high = high.size() > 0;
+    const Vec& zeta = has_high ? spectrum.highest_zeta : spectrum.lowest_zeta;
+    row(spectrum.finite, (has_high ? high : low).tail(1)[0], zeta.tail(1)[0]);
   }
 }
 
+std::vector<std::string> spectrum_header(const Model& scene) {
+  std::vector<std::string> header = {"mode", "omega", "frequency_hz"};
+  if (scene.system().damping()) header.push_back("zeta");
+  return header;
+}
+
 void write_spectrum(CsvFile& csv, const Spectrum& spectrum) {
-  const auto rows = [&](Index first_rank, const Vec& squares) {
+  const auto rows = [&](Index first_rank, const Vec& squares, const Vec& zeta) {
     for (Index j = 0; j < squares.size(); ++j) {
       const double w = omega(squares[j]);
-      csv.row(first_rank + j, w, w / (2 * M_PI));
+      if (spectrum.is_damped) {
+        csv.row(first_rank + j, w, w / (2 * M_PI), zeta[j]);
+      } else {
+        csv.row(first_rank + j, w, w / (2 * M_PI));
+      }
     }
   };
-  rows(1, spectrum.lowest.squares);
-  rows(spectrum.finite - spectrum.highest.squares.size() + 1, spectrum.highest.squares);
+  rows(1, spectrum.lowest.squares, spectrum.lowest_zeta);
+  rows(spectrum.finite - spectrum.highest.squares.size() + 1, spectrum.highest.squares,
+       spectrum.highest_zeta);
 }
 
 std::vector<std::string> shape_header(int dimension) {

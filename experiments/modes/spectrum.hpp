@@ -15,13 +15,18 @@ struct Spectrum {
   Index finite;
   CurvatureSigns signs;          // by rank: growing modes, then those hidden by rounding
   NaturalModes lowest, highest;  // of `count` modes each, if there are so many; highest: the others
+  bool is_damped;
+  // The damping ratios of the modes that vibrate, NaN for the others.
+  Vec lowest_zeta, highest_zeta;
 
   Spectrum(const Model& scene, Index count);
 };
 
 // Prints the lowest modes and the highest one.
 void print(const Spectrum& spectrum);
-// Writes modes.csv: rank, angular frequency [rad/s] and frequency [Hz].
+// The columns and rows of modes.csv: rank, angular frequency [rad/s], frequency [Hz] and, of a
+// damped scene, the damping ratio.
+std::vector<std::string> spectrum_header(const Model& scene);
 void write_spectrum(CsvFile& csv, const Spectrum& spectrum);
 
 // The columns and rows of shapes.csv: the positions of all nodes and, in each mode, their

@@ -106,6 +106,17 @@ int usual_number_of_frames(std::size_t nodes) {
   return static_cast<int>(std::clamp<double>(fit, fewest_frames, usual_frames));
 }
 
+namespace {
+
+// Of damped scenes with the energy that damping has taken.
+std::vector<std::string> energy_columns(const Model& scene) {
+  std::vector<std::string> names = {"file", "t", "kinetic", "potential", "total"};
+  if (scene.system().damping()) names.push_back("dissipated");
+  return names;
+}
+
+}  // namespace
+
 KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const Model& scene,
                          std::vector<double> times, const nlohmann::json& origin)
     : folder_(folder),
@@ -115,7 +126,7 @@ KeptMotions::KeptMotions(const std::string& folder, const Scene& start, const Mo
       earlier_(motions_in(folder + "/motions.csv")),
       earlier_runs_(earlier_.size() - std::ranges::count(earlier_, place + "reference" + ending)),
       table_(folder + "/motions.csv", columns),
-      energy_(folder + "/motions_energy.csv", {"file", "t", "kinetic", "potential", "total"}),
+      energy_(folder + "/motions_energy.csv", energy_columns(scene)),
       origin_(origin) {
   std::filesystem::remove_all(folder_ + "/" + unfinished);
   kit::require_folder(folder_ + "/" + unfinished);
@@ -191,7 +202,12 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
     const State& state = states[frames];
     if (!file->add(state, is_compared ? &reference_[frames * every] : nullptr)) break;
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
-    energy_.row(place + file_name, state.t, kinetic, potential, kinetic + potential);
+    const std::string motion = place + file_name;
+    if (scene_.system().damping()) {
+      energy_.row(motion, state.t, kinetic, potential, kinetic + potential, state.dissipated);
+    } else {
+      energy_.row(motion, state.t, kinetic, potential, kinetic + potential);
+    }
   }
   file->complete(origin_);
   file->commit();

@@ -16,6 +16,8 @@ PHASES |= {name: f"seconds_{name}" for name in ("force", "stiffness", "factoriza
 CACHE = 1 << 26
 # The columns of the energies and their significant digits in a page: of the total its small changes are shown.
 ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}
+# Of damped scenes there is the energy that damping has taken, too.
+TAKEN = {"dissipated": 17}
 
 
 def read_motion_rows(directory):
@@ -41,8 +43,9 @@ def read_energies(directory):
         return {}
     energies = {}
     for line, row in read_rows(path, ("file", *ENERGIES)):
-        own = energies.setdefault(row["file"], {name: [] for name in ENERGIES})
-        for name, digits in ENERGIES.items():
+        columns = ENERGIES | TAKEN if "dissipated" in row else ENERGIES
+        own = energies.setdefault(row["file"], {name: [] for name in columns})
+        for name, digits in columns.items():
             value = cell(path, line, row, name)
             own[name].append(None if value is None else float(f"{value:.{digits}g}"))
     return energies

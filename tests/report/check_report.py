@@ -14,6 +14,7 @@ import answers
 import emphasis
 import made_folder
 import motion_files
+import motion_part
 import page
 import static_part
 from commands import RunCommands
@@ -193,6 +194,15 @@ class Motions(Folder):
         self.assertEqual((found["t"], found["kinetic"]), ([0.01234568, 0.5], [2.345679e-5, None]))
         self.assertEqual(found["potential"], [-1.234568, None])
         self.assertEqual(found["total"], [0.12345678901234567, None])
+
+    def test_energies_of_damped_motions_have_what_damping_took(self):
+        self.folder.mkdir()
+        table = self.folder / "motions_energy.csv"
+        table.write_text("file,t,kinetic,potential,total,dissipated\na,0,1,2,3,0\na,1,1,1,2,1.01\n")
+        found = motion_files.read_energies(self.folder)["a"]
+        self.assertEqual(found["dissipated"], [0, 1.01])
+        told = motion_part.told_energy(found, [0, 1])
+        self.assertEqual(told, {"kinetic": [1, 1], "total": [3, 2], "dissipated": [0, 1.01]})
 
     def test_upwards_is_against_gravity(self):
         self.make(side=3, frames=3, runs=1)

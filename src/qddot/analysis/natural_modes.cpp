@@ -11,6 +11,7 @@
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/model/capabilities.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
@@ -200,6 +201,13 @@ NaturalModes highest_modes(const System& system, const Vec& q, Index count) {
     offset *= growth;
   }
   return modes_beside(p, matrix, offset, count);
+}
+
+double damping_ratio(const System& system, const Vec& q, const Vec& shape, double omega) {
+  if (!system.damping()) return 0;
+  Vec friction(q.size());
+  system.damping()->friction({0, q, shape}, friction);
+  return -shape.dot(friction) / (2 * omega);
 }
 
 }  // namespace qddot

@@ -34,4 +34,8 @@ NaturalModes lowest_modes(const System& system, const Vec& q, Index count, const
 // finite w^2. Throws as they do.
 NaturalModes highest_modes(const System& system, const Vec& q, Index count);
 
+// The damping ratio zeta = x'C(q)x/(2 w) of a mode of shape x (n, x'Mx = 1) and w = omega [rad/s] >
+// 0, by its own damping alone: C may also couple modes. Zero without Damping.
+double damping_ratio(const System& system, const Vec& q, const Vec& shape, double omega);
+
 }  // namespace qddot

@@ -39,11 +39,8 @@ void find_damping(Explanation& e, const System& system, const Vec& q) {
   constexpr double least_part = 1e-6;
   constexpr Index most_flat = 12;
   e.zeta_lowest = e.zeta_highest = std::numeric_limits<double>::quiet_NaN();
-  Vec friction(q.size());
   const auto ratio = [&](const NaturalModes& modes, Index mode) {
-    const Vec shape = modes.shapes.col(mode);
-    system.damping()->friction({0, q, shape}, friction);
-    return -shape.dot(friction) / (2 * std::sqrt(modes.squares[mode]));
+    return damping_ratio(system, q, modes.shapes.col(mode), std::sqrt(modes.squares[mode]));
   };
   try {
     const NaturalModes highest = highest_modes(system, q, 1);
@@ -158,8 +155,7 @@ Explanation explain(const Scene& scene, const Model& model, const ExplanationLim
   e.omega_max = e.drawn_unknowns <= limits.frequency ? lanczos(system, q)
                                                      : std::numeric_limits<double>::quiet_NaN();
   e.is_damped = system.damping() != nullptr;
-  if (e.is_damped && e.drawn_unknowns <= std::min(limits.frequency, limits.examined))
-    find_damping(e, system, q);
+  if (e.is_damped && e.drawn_unknowns <= limits.damping) find_damping(e, system, q);
   e.is_examined = e.drawn_unknowns <= limits.examined;
   if (!e.is_examined || e.unknowns == 0) return e;
   const Model all(scene, Reductions::all_directions());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -22,7 +23,7 @@ struct Explanation {
   bool is_damped = false;
   // Damping ratios x'Cx/(2 w) of the lowest mode x that vibrates and of the highest; NaN if they
   // were not found. Above 1 a mode creeps.
-  double zeta_lowest = 0, zeta_highest = 0;
+  double zeta_lowest = NAN, zeta_highest = NAN;
   double verlet_step = 0;  // the largest stable step of verlet with this damping [s]; 0 if unknown
   // These are for the start, in all directions in which the nodes may move:
   int unstable = 0;           // directions in which V falls: K is indefinite if there are any
@@ -34,13 +35,13 @@ struct Explanation {
   bool is_examined = true;    // false: the scene is too large, or K overflows
 };
 
-// The largest scenes, in unknowns as drawn, in which directions are examined and w_max is computed;
-// in larger ones they stay unknown. The default values take some seconds.
+// The largest scenes, in unknowns as drawn, in which directions are examined, w_max is computed and
+// damping ratios are; in larger ones they stay unknown. The default values take some seconds.
 struct ExplanationLimits {
-  Index examined = 100'000, frequency = std::numeric_limits<Index>::max();
+  Index examined = 100'000, frequency = std::numeric_limits<Index>::max(), damping = examined;
 };
 // Limits for a tenth of a second: for sidecars, which are written beside every run.
-inline constexpr ExplanationLimits at_a_glance{6000, 6000};
+inline constexpr ExplanationLimits at_a_glance{6000, 6000, 0};
 
 // Explains `scene` as it starts, and `model`. Throws nothing for any content of a scene, because
 // each sidecar needs it.

@@ -6,6 +6,7 @@ import { keptMotion, state } from "./report.js";
 import { words } from "./words.js";
 
 const KINDS = { kinetic: "#0072B2", potential: "#B35900", total: INK };
+const DISSIPATED = { dissipated: "#009E73" };
 const REFERENCE_LINE = { color: REFERENCE, width: 4 };
 
 const axis = (text) => ({
@@ -33,9 +34,9 @@ const line = (x, y, color, hover) => ({
 const referenceLine = (x, y) => ({ x, y, mode: "lines", line: REFERENCE_LINE, hoverinfo: "skip" });
 
 // The colours in words: of the run's energies, and of the totals of others.
-function drawKey(others) {
+function drawKey(kinds, others) {
   const key = [
-    ...Object.entries(KINDS),
+    ...Object.entries(kinds),
     ...(energyOf(reference) ? [["the reference's total", REFERENCE]] : []),
     ...others.map(({ run, color }) => [`total of ${run.label}`, color]),
   ];
@@ -54,12 +55,15 @@ export function drawEnergies() {
   if (!run?.energy) return;
   const exact = energyOf(reference);
   const others = comparedMotions().filter((other) => energyOf(other.run));
-  drawKey(others);
+  const isDamped = Boolean(run.energy.dissipated);
+  const kinds = isDamped ? { ...KINDS, ...DISSIPATED } : KINDS;
+  drawKey(kinds, others);
   const scale = Math.max(0, ...(exact ?? run.energy).kinetic) || 1;
   byId("energy-scale").textContent =
-    `Differences of the total are divided by the largest kinetic energy, ${words.number(scale)} J.`;
-  const { t, total } = run.energy;
-  const lines = Object.entries(KINDS).map(([kind, color]) =>
+    `Differences of the total${isDamped ? ", with what damping has taken," : ""} are divided by ` +
+    `the largest kinetic energy, ${words.number(scale)} J.`;
+  const { t, kept } = run.energy;
+  const lines = Object.entries(kinds).map(([kind, color]) =>
     line(t, run.energy[kind], color, "%{y:.4g} J"),
   );
   for (const { run: other, color } of others)
@@ -70,13 +74,14 @@ export function drawEnergies() {
   // A logarithmic axis has no place for zero.
   const drift = (values) =>
     values.map((value) => (value === null ? null : Math.abs(value - values[0]) / scale || null));
-  const drifts = [line(t, drift(total), INK, "%{y:.2g}")];
+  const drifts = [line(t, drift(kept), INK, "%{y:.2g}")];
   for (const { run: other, color } of others)
     drifts.unshift(
-      line(other.energy.t, drift(other.energy.total), color, `${other.label}: %{y:.2g}`),
+      line(other.energy.t, drift(other.energy.kept), color, `${other.label}: %{y:.2g}`),
     );
-  if (exact && exact !== run.energy) drifts.unshift(referenceLine(exact.t, drift(exact.total)));
+  if (exact && exact !== run.energy) drifts.unshift(referenceLine(exact.t, drift(exact.kept)));
   const all = drifts.flatMap(({ y }) => y).filter((value) => value > 0);
   const range = all.length ? widened(all, 1.5) : [1e-16, 1];
-  plot(byId("energy-errors"), drifts, layout("|E − E(0)| / largest kinetic", decades(...range)));
+  const title = `|E ${isDamped ? "+ W " : ""}− E(0)| / largest kinetic`;
+  plot(byId("energy-errors"), drifts, layout(title, decades(...range)));
 }

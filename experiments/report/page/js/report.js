@@ -51,6 +51,11 @@ for (const { energy, times } of motions.filter((run) => run.energy)) {
   energy.potential = energy.total.map((total, at) =>
     total === null || energy.kinetic[at] === null ? null : total - energy.kinetic[at],
   );
+  // What an exact motion keeps: with damping, the total and what damping has taken.
+  energy.kept = energy.total.map((total, at) => {
+    const taken = energy.dissipated ? energy.dissipated[at] : 0;
+    return total === null || taken === null ? null : total + taken;
+  });
 }
 
 /** The motions that were kept of runs, the most telling first. */

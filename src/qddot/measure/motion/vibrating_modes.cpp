@@ -64,13 +64,7 @@ std::vector<Mode> undamped_modes(const System& system, const Vec& q, int count) 
 
 std::vector<Mode> sampled_modes(const System& system, const Vec& q, int count) {
   std::vector<Mode> modes = undamped_modes(system, q, count);
-  if (const Damping* damping = system.damping()) {
-    Vec friction(q.size());
-    for (Mode& mode : modes) {
-      damping->friction({0, q, mode.shape}, friction);
-      mode.zeta = -mode.shape.dot(friction) / (2 * mode.omega);
-    }
-  }
+  for (Mode& mode : modes) mode.zeta = damping_ratio(system, q, mode.shape, mode.omega);
   return modes;
 }
 

@@ -121,6 +121,16 @@ std::string growth_in_words(const Method& method, double h, double omega) {
   return std::isfinite(rate) ? fmt::format(", here by up to {:.3g}/s", rate) : "";
 }
 
+// With damping, the limit that an explicit method crossed at the start; empty if it did not.
+std::string crossed_with_damping(const Method& method, double h, const Model& scene) {
+  const System& system = scene.system();
+  if (method.is(Trait::implicit) || !is_quickly_searched(system)) return "";
+  const double limit = stable_step(method, system, scene.initial().q);
+  if (h <= limit) return "";
+  return fmt::format("h is above {:.4g} s, {}'s limit with this damping at the start", limit,
+                     method.name);
+}
+
 std::string crossed(const Method& method, double h, const Before& before, bool is_known,
                     Outcome outcome) {
   const double limit = stable_h_omega(method);
@@ -173,13 +183,19 @@ std::optional<bool> holds(const Method& method, const Options& options, const Mo
 // The warning for a system with Damping: of leapfrog methods, whose limit is known.
 std::string damped_step_warning(const Method& method, double h, const Model& scene) {
   const System& system = scene.system();
+  const Vec& q = scene.initial().q;
   if (method.friction_lag == 0 || !is_quickly_searched(system)) return "";
-  const double limit = damped_step_limit(system, scene.initial().q, method.friction_lag);
+  // 4 - 2 lag h C - h^2 K is bounded from below in no time where C is of K and M.
+  if (const std::optional<double> beta = system.damping()->damping_time()) {
+    const double alpha = system.damping()->air_damping(), w = frequency_bound(system, q);
+    if (4 - 2 * method.friction_lag * h * (alpha + *beta * w * w) - h * h * w * w > 0) return "";
+  }
+  const double limit = damped_step_limit(system, q, method.friction_lag);
   if (h <= limit) return "";
   return fmt::format(
       "h = {:.4g} s is above {:.4g} s, where {} blows up with this damping: without it the limit "
       "would be {:.4g} s",
-      h, limit, method.name, linear_limit(method) / quick_frequency(system, scene.initial().q));
+      h, limit, method.name, linear_limit(method) / quick_frequency(system, q));
 }
 
 // Half a sentence if the forces of the start accelerate nodes to absurd speeds; empty if not.
@@ -247,12 +263,14 @@ std::string diagnosis(const Method& method, const Options& options, const Model&
   if (summary.outcome == Outcome::diverged && before.t < summary.t_reached) {
     words += fmt::format(", its energy no longer right after t = {:.3g} s", before.t);
   }
+  const bool is_damped = scene.system().damping() && !method.is(Trait::implicit);
   const std::string why =
-      crossed(method, h, before, is_quickly_searched(scene.system()), summary.outcome);
+      is_damped ? crossed_with_damping(method, h, scene)
+                : crossed(method, h, before, is_quickly_searched(scene.system()), summary.outcome);
   if (!why.empty()) words += "; " + why;
 
   std::vector<std::string> remedies;
-  if (linear_limit(method) > 0) {
+  if (linear_limit(method) > 0 || scene.system().damping()) {
     Options finer = options;
     for (int i = 1; i <= most_halvings; ++i) {
       finer.step_size = h / std::pow(2, i);

@@ -5,6 +5,9 @@
 
 #include <boost/math/tools/minima.hpp>
 
+#include "qddot/analysis/damped_step.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/analysis/natural_modes.hpp"
 #include "qddot/measure/stability/linear_step.hpp"
 
 namespace qddot::inline measure {
@@ -83,6 +86,17 @@ double measured_limit(const Method& method, double zeta) {
     return fades_out(of, limit) ? 0 : limit;
   }
   return std::numeric_limits<double>::infinity();
+}
+
+double stable_step(const Method& method, const System& system, const Vec& q) {
+  if (!system.damping()) return linear_limit(method) / quick_frequency(system, q);
+  if (method.friction_lag > 0) return damped_step_limit(system, q, method.friction_lag);
+  const NaturalModes fastest = highest_modes(system, q, 1);
+  if (fastest.squares.size() == 0 || !(fastest.squares[0] > 0)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double omega = std::sqrt(fastest.squares[0]);
+  return measured_limit(method, damping_ratio(system, q, fastest.shapes.col(0), omega)) / omega;
 }
 
 }  // namespace qddot::inline measure

@@ -16,4 +16,11 @@ constexpr double least_searched_h_omega = 0.01, largest_searched_h_omega = 100;
 // linear_step, which throws for damping that the method refuses.
 double measured_limit(const Method& method, double zeta = 0);
 
+// The largest step h [s] of an explicit method of fixed steps at which no vibration about q (n)
+// grows. Without Damping it is linear_limit() over the largest frequency. With it, leapfrog methods
+// have damped_step_limit(); others have the limit of the fastest vibration at that one's own
+// damping ratio, so that a slow vibration of much more damping may still grow. The system must have
+// K. Throws as quick_frequency() does.
+double stable_step(const Method& method, const System& system, const Vec& q);
+
 }  // namespace qddot::inline measure
