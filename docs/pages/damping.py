@@ -1,5 +1,7 @@
 """The numbers of the page on damping."""
 
+import math
+
 import method_pages
 from page_data import figures, row, rows
 
@@ -18,6 +20,51 @@ CHARTS = [
     ("plucked_string_01", "A plucked string, ζ = 0.1"),
     ("plucked_string_1", "A plucked string, ζ = 1"),
 ]
+
+MODAL_METHODS = [
+    "verlet",
+    "symmetric4",
+    "rk4",
+    "linear_midpoint",
+    "generalized_alpha",
+    "trbdf2",
+    "bdf2",
+    "implicit_euler",
+]
+
+
+def modes_shown():
+    """The modes with a damping of their own: frequency, damping ratio and those by the methods."""
+    shown = []
+    for mode in rows("damped_modes", "modal.csv", method=MODAL_METHODS[0]):
+        if float(mode["damping_ratio_physical"]) < 1e-3:
+            continue
+        measured = [
+            row("damped_modes", "modal.csv", method=method, mode=mode["mode"])
+            for method in MODAL_METHODS
+        ]
+        shown.append(
+            {
+                "frequency": figures(float(mode["omega"]) / (2 * math.pi), 3),
+                "physical": figures(mode["damping_ratio_physical"], 3),
+                "ratios": [figures(one["damping_ratio_measured"], 3) for one in measured],
+            }
+        )
+    return shown
+
+
+def worst_order_gap():
+    """The largest difference of an observed order from that of theory, of orders above 1."""
+    gaps = []
+    for method in method_pages.all_methods():
+        observed = [
+            float(one["observed_order"])
+            for one in rows("damped_convergence", "order.csv", method=method.name)
+            if one["observed_order"]
+        ]
+        if observed and method.order > 1:
+            gaps.append(abs(observed[-1] - method.order))
+    return max(gaps)
 
 
 def limit(method, zeta):

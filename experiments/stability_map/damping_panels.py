@@ -263,6 +263,9 @@ class DampingSheet:
             log_ticks(axes.xaxis, 9, "{:g}".format, subs=(1, 2, 5))
         axes.set_xlabel("natural frequency in Hz", fontsize=10, labelpad=2)
         named, all_marks, apart, unmeasured = [], [], 0.0, {}
+        physical = self.physical()
+        if physical:
+            axes.plot(*zip(*physical), color=INK, linewidth=5, alpha=0.3, zorder=2)
         for curve in self.curves:
             rows = [row for row in self.modes if row["method"] in curve.methods]
             if not rows:
@@ -284,6 +287,8 @@ class DampingSheet:
                 named.append((curve.name, curve.look, sorted(points)))
         note = "lines predicted, marks measured by exciting the mode: "
         note += f"apart by at most {number(apart)}"
+        if physical:
+            note += "; broad grey line: the damping of the scene itself"
         words = f"The scene's own modes at h = {number(h)} s (h ω up to {number(fastest)})"
         self.heading(LEFT, top, words, note)
         label_curves(axes, named, all_marks)
@@ -295,9 +300,19 @@ class DampingSheet:
         """The line of a curve over the frequencies of the modes, through each of them."""
         scale = 1 / (2 * math.pi * h)
         low, high = min(r["h_omega"] for r in rows), max(r["h_omega"] for r in rows)
-        between = [(x * scale, y) for x, y in curve.between(low, high)]
+        # The curve is of an oscillator without damping.
+        dense = [] if self.physical() else curve.between(low, high)
+        between = [(x * scale, y) for x, y in dense]
         at = [(row["h_omega"] * scale, row["damping_ratio_predicted"]) for row in rows]
         return sorted({*between, *(point for point in at if not math.isnan(point[1]))})
+
+    def physical(self):
+        """The damping of the modes themselves, as (frequency in Hz, damping ratio); empty without."""
+        ratios = {
+            (row["omega"] / (2 * math.pi), float(row.get("damping_ratio_physical") or 0))
+            for row in self.modes
+        }
+        return sorted(ratios) if any(zeta > 0 for _, zeta in ratios) else []
 
     def chosen_rows(self):
         """The rows of methods that choose their steps, at the tolerance that is drawn."""
