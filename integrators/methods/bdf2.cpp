@@ -6,6 +6,9 @@
 // Eliminating v_{n+1} leaves one nonlinear equation a step, with Newton's matrix M - c^2 h^2 K. The
 // method has order 2 and is A-stable and L-stable. The first step is implicit Euler's. The error of
 // that one step is of order h^2, so the order of the method stays 2.
+//
+// A dashpot is a spring within the step. The rate l' of its length is by the same formula:
+//   c h l'_{n+1} = l_{n+1} - l_n - back (l_n - l_{n-1}),   back = r^2/(1 + 2 r)
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -36,7 +39,10 @@ class Bdf2 final : public ImplicitStep {
     free_ = known_ + c * h * (now.v + back * (now.v - last_.v));
     u_ = free_;
     if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
-    if (is_damped()) set_velocity(1 / (c * h), -known_ / (c * h));
+    if (is_damped()) {
+      set_velocity(1 / (c * h), -known_ / (c * h));
+      set_lengths(-(1 + back) / (c * h), now.q, back / (c * h), last_.q);
+    }
     if (const Outcome outcome = solve_stage(now.q, next.t, c * c * h * h);
         outcome != Outcome::reached_end) {
       return outcome;

@@ -4,7 +4,8 @@
 // At the minimum the gradient is zero, M (u - h v_n) = h^2 f(q_{n+1}), and so
 //   q_{n+1} = q_n + h v_{n+1},   v_{n+1} = v_n + h M^-1 f(q_{n+1})
 // The method has order 1. On a vibration q'' = -w^2 q each step divides the amplitude by
-// sqrt(1 + h^2 w^2), so it decays at every h.
+// sqrt(1 + h^2 w^2), so it decays at every h. A dashpot is a spring within the step, of the rate
+// l' = (l_{n+1} - l_n)/h and the potential h/2 c l'^2: it adds h^2 times that to what is minimised.
 #include "qddot/integrators/base/implicit_step.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -18,7 +19,10 @@ class ImplicitEuler final : public ImplicitStep {
   Outcome step(const State& now, double h, State& next) {
     free_ = h * now.v;
     u_ = free_;
-    if (is_damped()) set_velocity(1 / h);
+    if (is_damped()) {
+      set_velocity(1 / h);
+      set_lengths(-1 / h, now.q, 0, now.q);
+    }
     if (const Outcome outcome = solve_stage(now.q, next.t, h * h);
         outcome != Outcome::reached_end) {
       return outcome;

@@ -165,6 +165,52 @@ BOOST_AUTO_TEST_CASE(a_dashpot_of_length_zero_resists_in_all_directions) {
   }
 }
 
+// By the rates of lengths, which are zero where the whole turns; those by velocities are not.
+BOOST_AUTO_TEST_CASE(friction_by_lengths_has_a_potential_and_lets_the_whole_turn) {
+  for_networks([](const Network& network, const System& system, const Vec& q, const Vec& v) {
+    const Damping& damping = offered(system.damping());
+    const Vec q1 = q - 0.05 * v, q2 = q - 0.13 * v;
+    const double a0 = 7, a2 = 1.5, a1 = -a0 - a2;
+    const auto power = [&](const Vec& x) {
+      Vec f(x.size());
+      return damping.secant_friction({x, q1, q2, a0, a1, a2}, f).value();
+    };
+    Vec f(q.size());
+    if (!damping.has_dashpots()) {
+      BOOST_TEST(!damping.secant_friction({q, q1, q2, a0, a1, a2}, f).has_value());
+      return;
+    }
+    damping.secant_friction({q, q1, q2, a0, a1, a2}, f);
+    const Eigen::MatrixXd slope = finite_difference_jacobian(
+        [&](const Vec& x) { return Vec(Vec::Constant(1, power(x) / (2 * a0))); }, q, 1e-5);
+    // Central differences of 1e-5 err by their square and by rounding over them.
+    BOOST_TEST((f + slope.transpose()).norm() <= 1e-7 * (1 + f.norm()));
+    // As the instants come together it is friction by velocities.
+    const double h = 1e-6;
+    const Vec near1 = q - h * v;
+    Vec by_velocities = friction_at(system, q, v);
+    by_velocities += network.air_damping * system.mass().cwiseProduct(v);
+    damping.secant_friction({q, near1, near1, 1 / h, -1 / h, 0}, f);
+    // Curvature of lengths times h, and rounding over h.
+    BOOST_TEST((f - by_velocities).norm() <= 1e-4 * (1 + by_velocities.norm()));
+  });
+  std::mt19937 random(23);
+  Problem p = random_network(random, 3, 20, 1.2);
+  p.network.anchors.clear();
+  for_springs(p.network, [](auto& spring) { spring.law.rest_length += 0.1; });
+  const auto system = make_mass_spring(damped(p.network, random, 0));
+  const Vec& q = p.initial.q;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  Vec turned(q.size()), f(q.size());
+  for (Index i = 0; i < q.size(); i += 3) turned.segment<3>(i) = turn * q.segment<3>(i);
+  const Damping& damping = offered(system->damping());
+  const double power = damping.secant_friction({turned, q, q, 10, -10, 0}, f).value();
+  BOOST_TEST(power <= 1e-24);  // of 20 springs whose lengths are rounded: (10 eps)^2
+  BOOST_TEST(f.norm() <= 1e-12);
+  BOOST_TEST(friction_at(*system, turned, 10 * (turned - q)).norm() > 0.1);
+}
+
 BOOST_AUTO_TEST_CASE(damping_in_proportion_to_stiffness_is_known) {
   std::mt19937 random(13);
   Network network = random_network(random, 2, 20, 1.1).network;

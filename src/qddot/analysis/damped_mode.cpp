@@ -7,7 +7,7 @@ namespace qddot {
 namespace {
 
 // Below this, of 2 gamma t and w t, the Taylor series loses no more than a digit.
-constexpr double small = 1;
+constexpr double series_size = 1;
 // The terms after which rounding is reached at that size: 1/22!.
 constexpr int terms = 22;
 
@@ -48,7 +48,7 @@ ModeResponse by_formula(double gamma, double square, double t) {
     const double slowly = std::exp(-slow * t), quickly = std::exp(-fast * t);
     s = -slowly * std::expm1(-2 * m * t) / (2 * m);
     c = (fast * quickly - slow * slowly) / (2 * m);
-    if (std::abs(slow) * t < small / 2) {  // 1 - c - 2 gamma s would cancel
+    if (std::abs(slow) * t < series_size / 2) {  // 1 - c - 2 gamma s would cancel
       const auto decayed = [t](double rate) {
         return rate == 0 ? t : -std::expm1(-rate * t) / rate;
       };
@@ -63,7 +63,7 @@ ModeResponse by_formula(double gamma, double square, double t) {
 ModeResponse mode_response(double gamma, double square, double t) {
   if (t == 0) return {1, 0, 0};
   const double size = std::max(2 * std::abs(gamma) * t, std::sqrt(std::abs(square)) * t);
-  return size <= small ? by_series(gamma, square, t) : by_formula(gamma, square, t);
+  return size <= series_size ? by_series(gamma, square, t) : by_formula(gamma, square, t);
 }
 
 }  // namespace qddot

@@ -146,6 +146,31 @@ void BlockDiagonalSystem::friction(const At& at, MutableVec f) const {
   });
 }
 
+std::optional<double> BlockDiagonalSystem::secant_friction(const BackwardRate& rate,
+                                                           MutableVec f) const {
+  double power = 0;
+  Index at = 0;
+  for (const auto& block : blocks_) {
+    const Index n = block->size();
+    const Damping* damping = block->damping();
+    if (damping && damping->has_dashpots()) {
+      const BackwardRate own{rate.q0.segment(at, n),
+                             rate.q1.segment(at, n),
+                             rate.q2.segment(at, n),
+                             rate.a0,
+                             rate.a1,
+                             rate.a2};
+      const std::optional<double> of_block = damping->secant_friction(own, f.segment(at, n));
+      if (!of_block) return {};
+      power += *of_block;
+    } else {
+      f.segment(at, n).setZero();
+    }
+    at += n;
+  }
+  return power;
+}
+
 void BlockDiagonalSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
   assemble(at, c, [](const System& block, const At& own, SymmetricMatrix& of_block) {
     if (const Damping* damping = block.damping()) damping->damping_matrix(own, of_block);

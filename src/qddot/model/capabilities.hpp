@@ -88,6 +88,13 @@ class Kinks {
   virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
 };
 
+// A rate of change by a formula over some instants: x' = a0 x0 + a1 x1 + a2 x2, with a0 + a1 + a2 =
+// 0 [1/s], of anything that depends on the positions q0 (n) and those at earlier instants.
+struct BackwardRate {
+  ConstVec q0, q1, q2;
+  double a0, a1, a2;
+};
+
 // Damping that is linear in the velocities: f(q, v) = -dV/dq - C(q) v. Rayleigh's dissipation
 // function R = 1/2 v'Cv gives it by Lagrange's equation,
 //   d/dt dL/dv - dL/dq = -dR/dv.
@@ -104,6 +111,14 @@ class Damping {
   virtual std::optional<double> damped_force(const At& /*at*/, MutableVec /*f*/,
                                              MutableVec /*friction*/,
                                              BesideForce* /*beside*/) const {
+    return {};
+  }
+  // Writes friction at q0 into `f`, with the rates l' of the dashpots' lengths by the formula in
+  // place of those by velocities, and returns the power that it takes, sum c l'^2 [W]. So a dashpot
+  // is a spring: f = -(1/a0) d(sum c l'^2 / 2)/d q0. Air is left out. Returns nothing, and does
+  // nothing, if the system has no dashpots or knows no lengths.
+  virtual std::optional<double> secant_friction(const BackwardRate& /*rate*/,
+                                                MutableVec /*f*/) const {
     return {};
   }
   // Writes C(q) [N s/m] into `c`, which must have the pattern of System::stiffness_pattern().

@@ -51,6 +51,14 @@ std::optional<double> ConstrainedSystem::damped_force(const At& at, MutableVec f
   return 0;
 }
 
+std::optional<double> ConstrainedSystem::secant_friction(const BackwardRate& rate,
+                                                         MutableVec f) const {
+  const std::optional<double> power = damping_->secant_friction(rate, f);
+  if (!power) return {};
+  for (const Index i : unknowns_) f[i] = 0;
+  return power;
+}
+
 void ConstrainedSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
   damping_->damping_matrix(at, c);
   clear_held(c);

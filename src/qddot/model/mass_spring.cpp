@@ -160,6 +160,23 @@ class MassSpring final : public CapableSystem {
       add_friction(at, f);
     }
   }
+  std::optional<double> secant_friction(const BackwardRate& rate, MutableVec f) const override {
+    if (!has_dashpots_) return {};
+    const SpringLists<D>& springs = lists();
+    const VecView q0 = rate.q0, q1 = rate.q1, q2 = rate.q2;
+    double power = 0;
+    f.setZero();
+    springs.add_forces(
+        [&](const auto& spring) {
+          const SecantDashpot dashpot =
+              secant_dashpot(spring.law, springs.between(q0, spring), springs.between(q1, spring),
+                             springs.between(q2, spring), rate);
+          power += dashpot.power;
+          return dashpot.force;
+        },
+        f);
+    return power;
+  }
   void damping_matrix(const At& at, SymmetricMatrix& c) const override {
     if (has_dashpots_) {
       for_stiffness().dashpots->material_stiffness(at, c);
@@ -298,6 +315,24 @@ class MassSpring final : public CapableSystem {
     } else if (is_proportional && most - least <= roundings * most) {
       damping_time_ = most;
     }
+  }
+
+  // A dashpot by the rate of its length: the force on its end i [N] and its power [W]. One of rest
+  // length zero resists in all directions, by the rate of d.
+  struct SecantDashpot {
+    Point force;
+    double power;
+  };
+  static SecantDashpot secant_dashpot(const SpringLaw& law, const Point& d0, const Point& d1,
+                                      const Point& d2, const BackwardRate& rate) {
+    if (D == 1 || law.rest_length == 0) {
+      const Point w = rate.a0 * d0 + rate.a1 * d1 + rate.a2 * d2;
+      return {law.damping * w, law.damping * w.squaredNorm()};
+    }
+    const double length = d0.norm();
+    const double l_rate = rate.a0 * length + rate.a1 * d1.norm() + rate.a2 * d2.norm();
+    const double along = length > 0 ? law.damping * l_rate / length : 0;
+    return {along * d0, law.damping * l_rate * l_rate};
   }
 
   // See ForStiffness; `network` has the springs of this one.

@@ -179,7 +179,24 @@ void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
   x_ = q + u;
   if (!is_damped_) return force({t_, x_}, f);
   velocity_ = rate_ * u + w_;
-  force({t_, x_, velocity_}, f);
+  if (!find_secant_friction()) return force({t_, x_, velocity_}, f);
+  force({t_, x_}, f);
+  f += secant_;
+}
+
+std::optional<double> ImplicitStep::find_secant_friction() {
+  if (!q1_) return {};
+  const Stopwatch watch(clock(), &Seconds::force);
+  const Damping& damping = *system().damping();
+  secant_.resize(x_.size());
+  std::optional<double> power = damping.secant_friction({x_, *q1_, *q2_, rate_, a1_, a2_}, secant_);
+  if (!power) {
+    q1_ = nullptr;
+  } else if (const double alpha = damping.air_damping(); alpha > 0) {
+    secant_ -= alpha * system().mass().cwiseProduct(velocity_);
+    *power += 2 * alpha * system().kinetic(velocity_);
+  }
+  return power;
 }
 
 At ImplicitStep::at_friction(const Vec& q) {
@@ -188,7 +205,11 @@ At ImplicitStep::at_friction(const Vec& q) {
   return {t_, x_, velocity_};
 }
 
-double ImplicitStep::stage_power(const Vec& q) { return power(at_friction(q)); }
+double ImplicitStep::stage_power(const Vec& q) {
+  const At at = at_friction(q);
+  const std::optional<double> secant = find_secant_friction();
+  return secant ? *secant : power(at);
+}
 
 void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                                    SymmetricMatrix& k) {
@@ -269,8 +290,9 @@ double ImplicitStep::objective(const Vec& q, double s) {
   x_ = u_ - free_;
   const double g = system().kinetic(x_) + s * potential;
   if (!is_damped_) return g;
-  velocity_ = rate_ * u_ + w_;
-  return g + s / (2 * rate_) * power({t_, frozen_, velocity_});
+  const At at = at_friction(q);
+  const std::optional<double> secant = find_secant_friction();
+  return g + s / (2 * rate_) * (secant ? *secant : power({t_, frozen_, at.v}));
 }
 
 }  // namespace qddot

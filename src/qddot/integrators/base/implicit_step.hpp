@@ -53,6 +53,13 @@ class ImplicitStep : public Formula {
     rate_ = r;
     w_ = w;
   }
+  // Has the next stages take dashpots as springs within the step: by the rates of their lengths
+  // a0 l(q_n + u) + a1 l(q1) + a2 l(q2), with a0 = r of set_velocity(), if the system knows
+  // lengths. Then friction has a potential, and does not resist a turn of the whole. q1, q2 (n)
+  // must outlive the stages.
+  void set_lengths(double a1, const Vec& q1, double a2, const Vec& q2) {
+    q1_ = &q1, q2_ = &q2, a1_ = a1, a2_ = a2;
+  }
   // v'Cv [W] at the last stage.
   double stage_power(const Vec& q);
 
@@ -92,6 +99,9 @@ class ImplicitStep : public Formula {
   double objective(const Vec& q, double s);
   // The stage's place and velocity in x_ and velocity_, as the arguments of friction.
   At at_friction(const Vec& q);
+  // Friction at x_ with the dashpots as springs in secant_, and its power; nothing if there are no
+  // lengths to go by.
+  std::optional<double> find_secant_friction();
 
   const double tolerance_;
   double t_ = 0;                   // of the stage [s]
@@ -102,10 +112,13 @@ class ImplicitStep : public Formula {
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // s of the present factors; 0: none
   const bool is_damped_;
-  double rate_ = 0, factorized_rate_ = 0;  // r, and that of the present factors
-  Vec w_, velocity_;                       // n if the system has Damping
-  Vec frozen_;                             // where C of g is taken
-  Compression compression_;                // of the present factors
+  double rate_ = 0, factorized_rate_ = 0;    // r, and that of the present factors
+  Vec w_, velocity_;                         // n if the system has Damping
+  const Vec *q1_ = nullptr, *q2_ = nullptr;  // see set_lengths
+  double a1_ = 0, a2_ = 0;
+  Vec secant_;
+  Vec frozen_;               // where C of g is taken
+  Compression compression_;  // of the present factors
   // The error of the last stage's prediction, and the rate of convergence of its corrections.
   double last_missed_ = 0, last_rate_ = 1;
 };

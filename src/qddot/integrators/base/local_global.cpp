@@ -39,7 +39,7 @@ Outcome LocalGlobal::step(const State& now, double h, State& next) {
     if (!is_finite_) return Outcome::not_finite;
   }
   next.q = now.q + h * next.v;
-  if (is_damped()) next.dissipated = now.dissipated + h * power({t_, now.q, next.v});
+  if (is_damped()) next.dissipated = now.dissipated + h * find_friction(next.v);
   return Outcome::reached_end;
 }
 
@@ -48,8 +48,23 @@ void LocalGlobal::gradient(const Vec& v, Vec& r) {
   force({t_, q_}, f_);
   r = system().mass().cwiseProduct(v - now_->v) - h_ * f_;
   if (!is_damped()) return;
-  power({t_, now_->q, v});
-  r -= h_ * friction();
+  find_friction(v);
+  r -= h_ * friction_;
+}
+
+double LocalGlobal::find_friction(const Vec& v) {
+  q_ = now_->q + h_ * v;
+  friction_.resize(q_.size());
+  const Damping& damping = *system().damping();
+  const auto secant =
+      damping.secant_friction({q_, now_->q, now_->q, 1 / h_, -1 / h_, 0}, friction_);
+  if (!secant) {
+    const double taken = power({t_, now_->q, v});
+    friction_ = friction();
+    return taken;
+  }
+  friction_ -= damping.air_damping() * system().mass().cwiseProduct(v);
+  return *secant + 2 * damping.air_damping() * system().kinetic(v);
 }
 
 void LocalGlobal::direction(const Vec& r, Vec& p) {
@@ -64,7 +79,7 @@ double LocalGlobal::objective(const Vec& v) {
   const double kinetic = system().kinetic(q_);
   q_ = now_->q + h_ * v;
   const double g = kinetic + system().potential({t_, q_});
-  return is_damped() ? g + h_ / 2 * power({t_, now_->q, v}) : g;
+  return is_damped() ? g + h_ / 2 * find_friction(v) : g;
 }
 
 void LocalGlobal::search(Vec& v, const Vec& p, double slope, double& g) {

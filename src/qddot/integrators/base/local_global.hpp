@@ -16,8 +16,9 @@ namespace qddot {
 // v = v - p; other methods use the same r and p in their own ways. The matrix is factorised once a
 // step size.
 //
-// Friction is taken with the C of the step's start. It adds h/2 v'C(q_n)v to g, which so stays a
-// minimisation, h C(q_n) v to r, and h times the constant matrix that bounds C to the metric.
+// A dashpot c is a spring within the step, of the rate l' = (l(q_n + h v) - l(q_n))/h. It adds h/2
+// c l'^2 to g, which so stays a minimisation, and h times the constant matrix that bounds C to the
+// metric. A system that knows no lengths has h/2 v'C(q_n)v.
 class LocalGlobal : public Formula {
  public:
   explicit LocalGlobal(SystemRun& run);
@@ -43,6 +44,10 @@ class LocalGlobal : public Formula {
   void gradient(const Vec& v, Vec& r);
   void direction(const Vec& r, Vec& p);
   double objective(const Vec& v);  // g [J]
+  // Sets friction_ where the step ends with v, and returns the power that it takes [W]. Dashpots
+  // are springs within the step, by l' = (l(q_n + h v) - l(q_n))/h; a system that knows no lengths
+  // has C as it is at q_n.
+  double find_friction(const Vec& v);
   // Moves v by the first of -p, -p/2, -p/4, ... that lowers g by Armijo's rule, or not at all if
   // rounding hides it. `g` is that of v, before and after.
   void search(Vec& v, const Vec& p, double slope, double& g);
@@ -57,6 +62,7 @@ class LocalGlobal : public Formula {
   double t_ = 0, h_ = 0, factorized_h_ = 0;  // t_: of its end [s]
   bool is_finite_ = true;                    // whether the last direction is finite
   Vec q_{system().size()}, f_{system().size()}, trial_{system().size()};
+  Vec friction_;  // n if the system has Damping
 };
 
 }  // namespace qddot

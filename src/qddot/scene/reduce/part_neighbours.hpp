@@ -93,8 +93,8 @@ class Neighbours {
       if (is_seen[at(first)]) continue;
       is_seen[at(first)] = true;
       order.push_back(first);
-      for (std::size_t i = order.size() - 1; i < order.size(); ++i) {
-        for (const int k : meetings_[order[i]]) {
+      for (std::size_t reached = order.size() - 1; reached < order.size(); ++reached) {
+        for (const int k : meetings_[order[reached]]) {
           const int next = other_end(k);
           if (!is_seen[at(next)]) order.push_back(next);
           is_seen[at(next)] = true;
