@@ -159,13 +159,20 @@ bool SpringsByNode<D>::uses_threads() const {
 }
 
 template <int D>
+template <class Damping>
 double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce* beside,
-                                    Damped* damped) const {
+                                    const Damping& damped) const {
   const SpringTable springs = table();
-  const DashpotTable dashpots = dashpot_table();
-  const Positions positions = memory(), velocities = damped ? memory(1) : Positions{};
-  const Offset none = damped ? no_offset(damped->friction) : Offset{};
-  if (damped) place_resting_points(velocities);
+  const Positions positions = memory();
+  [[maybe_unused]] DashpotTable dashpots{};
+  [[maybe_unused]] Positions velocities{};
+  [[maybe_unused]] Offset none{};
+  if constexpr (Damping::exists) {
+    dashpots = dashpot_table();
+    velocities = memory(1);
+    none = no_offset(damped.friction);
+    place_resting_points(velocities);
+  }
   const int count = parts_.count();
   thread_local Vec of_parts;
   if (of_parts.size() < count) of_parts.resize(count);
@@ -178,27 +185,28 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
     kernels_->place(springs, q.data(), positions, parts_.parts[from].begin,
                     parts_.parts[end - 1].end);
     place_images(positions, from, end);
-    if (!damped) return;
-    kernels_->place(springs, damped->v.data(), velocities, parts_.parts[from].begin,
-                    parts_.parts[end - 1].end);
-    place_images(velocities, from, end);
+    if constexpr (Damping::exists) {
+      kernels_->place(springs, damped.v.data(), velocities, parts_.parts[from].begin,
+                      parts_.parts[end - 1].end);
+      place_images(velocities, from, end);
+    }
   };
   // Sums parts [from, end). Of these, [placed, places_end) still have to be placed.
   const auto sum = [&](int from, int end, int placed, int places_end) {
     thread_local Vec memory;
-    const Index numbers = damped ? 2 * rings_.numbers : rings_.numbers;
+    const Index numbers = Damping::exists ? 2 * rings_.numbers : rings_.numbers;
     if (memory.size() < numbers) memory.resize(numbers);
-    bool met_no_length = false;
+    [[maybe_unused]] bool met_no_length = false;
     const int at_once = end - from <= parts_in_cache ? parts_in_cache : parts_at_once;
     for (int first = from; first < end; first += at_once) {
       const int last = std::min(first + at_once, end) - 1;
       const int read_end = std::min(parts_.parts[last].read_end, places_end);
       if (placed < read_end) place(std::exchange(placed, read_end), read_end);
       const int begin = parts_.parts[first].begin, slices_end = parts_.parts[last].end;
-      if (damped) {
+      if constexpr (Damping::exists) {
         kernels_->damped_force(springs, dashpots, positions, velocities, memory.data(),
                                first > from, met_no_length, offset(), f.data(), none,
-                               damped->friction.data(), begin, slices_end);
+                               damped.friction.data(), begin, slices_end);
       } else {
         kernels_->force(springs, positions, memory.data(), first > from, offset(), f.data(), begin,
                         slices_end);
@@ -275,8 +283,7 @@ void SpringsByNode<D>::sum_friction(const VecView& q, const VecView& v, MutableV
 template <int D>
 double SpringsByNode<D>::sum_damped_forces(const VecView& q, const VecView& v, MutableVec f,
                                            MutableVec friction, BesideForce* beside) const {
-  Damped damped{v, friction};
-  return sum_forces(q, f, beside, &damped);
+  return sum_forces(q, f, beside, Damped{v, friction});
 }
 
 template <int D>

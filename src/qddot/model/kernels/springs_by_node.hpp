@@ -39,10 +39,10 @@ class SpringsByNode {
   // It differs from a sum spring by spring by rounding only. It is the same to the last bit for any
   // number of threads, kind of roots and width of vectors (except v2, without fused products). q,
   // f: n. May be called from any thread.
-  void sum_forces(const VecView& q, MutableVec f) const { sum_forces(q, f, nullptr); }
+  void sum_forces(const VecView& q, MutableVec f) const { sum_forces(q, f, nullptr, Undamped{}); }
   // The same with work beside it; see System::force_beside. q, f: n.
   double sum_forces(const VecView& q, MutableVec f, BesideForce& beside) const {
-    return sum_forces(q, f, &beside);
+    return sum_forces(q, f, &beside, Undamped{});
   }
 
   // V of all springs [J], with springs to fixed points counted half; alike at every width of
@@ -99,11 +99,16 @@ class SpringsByNode {
 
   // Velocities, and what the dashpots' forces are written to.
   struct Damped {
+    static constexpr bool exists = true;
     const VecView& v;
     MutableVec& friction;
   };
+  struct Undamped {
+    static constexpr bool exists = false;
+  };
+  template <class Damping>
   double sum_forces(const VecView& q, MutableVec f, BesideForce* beside,
-                    Damped* damped = nullptr) const;
+                    const Damping& damped) const;
   bool uses_threads() const;
   // Fills parts_ and what belongs to them.
   void divide_into_parts();
