@@ -108,7 +108,7 @@ int usual_number_of_frames(std::size_t nodes) {
 
 namespace {
 
-// Of damped scenes with the energy that damping has taken.
+// Damped scenes have the energy that damping has taken, too.
 std::vector<std::string> energy_columns(const Model& scene) {
   std::vector<std::string> names = {"file", "t", "kinetic", "potential", "total"};
   if (scene.system().damping()) names.push_back("dissipated");

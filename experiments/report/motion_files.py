@@ -16,7 +16,7 @@ PHASES |= {name: f"seconds_{name}" for name in ("force", "stiffness", "factoriza
 CACHE = 1 << 26
 # The columns of the energies and their significant digits in a page: of the total its small changes are shown.
 ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}
-# Of damped scenes there is the energy that damping has taken, too.
+# Damped scenes have the energy that damping has taken, too.
 TAKEN = {"dissipated": 17}
 
 
