@@ -167,20 +167,21 @@ BOOST_AUTO_TEST_CASE(a_dashpot_of_length_zero_resists_in_all_directions) {
 
 // By the rates of lengths, which are zero where the whole turns; those by velocities are not.
 BOOST_AUTO_TEST_CASE(friction_by_lengths_has_a_potential_and_lets_the_whole_turn) {
-  for_networks([](const Network& network, const System& system, const Vec& q, const Vec& v) {
+  for_networks([](const Network&, const System& system, const Vec& q, const Vec& v) {
     const Damping& damping = offered(system.damping());
     const Vec q1 = q - 0.05 * v, q2 = q - 0.13 * v;
     const double a0 = 7, a2 = 1.5, a1 = -a0 - a2;
+    const Vec at_rest = Vec::Zero(q.size());  // no air
     const auto power = [&](const Vec& x) {
       Vec f(x.size());
-      return damping.secant_friction({x, q1, q2, a0, a1, a2}, f).value();
+      return damping.secant_friction({x, q1, q2, a0, a1, a2}, at_rest, f).value();
     };
     Vec f(q.size());
     if (!damping.has_dashpots()) {
-      BOOST_TEST(!damping.secant_friction({q, q1, q2, a0, a1, a2}, f).has_value());
+      BOOST_TEST(!damping.secant_friction({q, q1, q2, a0, a1, a2}, v, f).has_value());
       return;
     }
-    damping.secant_friction({q, q1, q2, a0, a1, a2}, f);
+    damping.secant_friction({q, q1, q2, a0, a1, a2}, at_rest, f);
     const Eigen::MatrixXd slope = finite_difference_jacobian(
         [&](const Vec& x) { return Vec(Vec::Constant(1, power(x) / (2 * a0))); }, q, 1e-5);
     // Central differences of 1e-5 err by their square and by rounding over them.
@@ -188,11 +189,12 @@ BOOST_AUTO_TEST_CASE(friction_by_lengths_has_a_potential_and_lets_the_whole_turn
     // As the instants come together it is friction by velocities.
     const double h = 1e-6;
     const Vec near1 = q - h * v;
-    Vec by_velocities = friction_at(system, q, v);
-    by_velocities += network.air_damping * system.mass().cwiseProduct(v);
-    damping.secant_friction({q, near1, near1, 1 / h, -1 / h, 0}, f);
+    const Vec by_velocities = friction_at(system, q, v);
+    const BackwardRate rate{q, near1, near1, 1 / h, -1 / h, 0};
+    const double taken = damping.secant_friction(rate, v, f).value();
     // Curvature of lengths times h, and rounding over h.
     BOOST_TEST((f - by_velocities).norm() <= 1e-4 * (1 + by_velocities.norm()));
+    BOOST_TEST(std::abs(taken + by_velocities.dot(v)) <= 1e-4 * (1 + taken));
   });
   std::mt19937 random(23);
   Problem p = random_network(random, 3, 20, 1.2);
@@ -205,7 +207,7 @@ BOOST_AUTO_TEST_CASE(friction_by_lengths_has_a_potential_and_lets_the_whole_turn
   Vec turned(q.size()), f(q.size());
   for (Index i = 0; i < q.size(); i += 3) turned.segment<3>(i) = turn * q.segment<3>(i);
   const Damping& damping = offered(system->damping());
-  const double power = damping.secant_friction({turned, q, q, 10, -10, 0}, f).value();
+  const double power = damping.secant_friction({turned, q, q, 10, -10, 0}, q, f).value();
   BOOST_TEST(power <= 1e-24);  // of 20 springs whose lengths are rounded: (10 eps)^2
   BOOST_TEST(f.norm() <= 1e-12);
   BOOST_TEST(friction_at(*system, turned, 10 * (turned - q)).norm() > 0.1);
@@ -286,6 +288,11 @@ BOOST_AUTO_TEST_CASE(wrappers_have_the_damping_of_what_they_wrap) {
   const Vec f = friction_at(both, two_q, two_v);
   BOOST_TEST((f.head(v.size()) - friction_at(*system, p.initial.q, v)).norm() == 0);
   BOOST_TEST(f.tail(v.size()).norm() == 0);
+  const Vec near_q = two_q - 1e-6 * two_v;
+  const BackwardRate rate{two_q, near_q, near_q, 1e6, -1e6, 0};
+  Vec by_lengths(two_q.size());
+  BOOST_TEST((offered(both.damping()).secant_friction(rate, two_v, by_lengths).has_value()));
+  BOOST_TEST((by_lengths - f).norm() <= 1e-4 * (1 + f.norm()));  // as above
   BOOST_TEST(dense(damping_at(both, two_q)).bottomRightCorner(v.size(), v.size()).norm() == 0);
   BOOST_TEST(!in_parts(p.network, p.network).damping());
 }

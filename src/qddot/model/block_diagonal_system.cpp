@@ -147,24 +147,25 @@ void BlockDiagonalSystem::friction(const At& at, MutableVec f) const {
 }
 
 std::optional<double> BlockDiagonalSystem::secant_friction(const BackwardRate& rate,
-                                                           MutableVec f) const {
+                                                           const ConstVec& v, MutableVec f) const {
   double power = 0;
   Index at = 0;
   for (const auto& block : blocks_) {
     const Index n = block->size();
+    const Vec q = rate.q0.segment(at, n), own_v = v.segment(at, n);
+    auto own = f.segment(at, n);
     const Damping* damping = block->damping();
-    if (damping && damping->has_dashpots()) {
-      const BackwardRate own{rate.q0.segment(at, n),
-                             rate.q1.segment(at, n),
-                             rate.q2.segment(at, n),
-                             rate.a0,
-                             rate.a1,
-                             rate.a2};
-      const std::optional<double> of_block = damping->secant_friction(own, f.segment(at, n));
+    if (!damping) {
+      own.setZero();
+    } else if (damping->has_dashpots()) {
+      const Vec q1 = rate.q1.segment(at, n), q2 = rate.q2.segment(at, n);
+      const auto of_block =
+          damping->secant_friction({q, q1, q2, rate.a0, rate.a1, rate.a2}, own_v, own);
       if (!of_block) return {};
       power += *of_block;
     } else {
-      f.segment(at, n).setZero();
+      damping->friction({0, q, own_v}, own);
+      power -= own.dot(own_v);
     }
     at += n;
   }

@@ -53,7 +53,8 @@ class BlockDiagonalSystem final : public CapableSystem {
   Index kink_count() const override;
   void kink_lengths(const ConstVec& q, MutableVec lengths) const override;
   void friction(const At& at, MutableVec f) const override;
-  std::optional<double> secant_friction(const BackwardRate& rate, MutableVec f) const override;
+  std::optional<double> secant_friction(const BackwardRate& rate, const ConstVec& v,
+                                        MutableVec f) const override;
   void damping_matrix(const At& at, SymmetricMatrix& c) const override;
   bool damping_is_constant() const override;
   double air_damping() const override;

@@ -114,10 +114,10 @@ class Damping {
     return {};
   }
   // Writes friction at q0 into `f`, with the rates l' of the dashpots' lengths by the formula in
-  // place of those by velocities, and returns the power that it takes, sum c l'^2 [W]. So a dashpot
-  // is a spring: f = -(1/a0) d(sum c l'^2 / 2)/d q0. Air is left out. Returns nothing, and does
-  // nothing, if the system has no dashpots or knows no lengths.
-  virtual std::optional<double> secant_friction(const BackwardRate& /*rate*/,
+  // place of those by velocities, and returns the power that it takes [W]. So a dashpot is a
+  // spring: its force is -(1/a0) d(c l'^2 / 2)/d q0, and its power c l'^2. Air is by the velocities
+  // v (n). Returns nothing, and does nothing, if the system has no dashpots or knows no lengths.
+  virtual std::optional<double> secant_friction(const BackwardRate& /*rate*/, const ConstVec& /*v*/,
                                                 MutableVec /*f*/) const {
     return {};
   }

@@ -52,8 +52,8 @@ std::optional<double> ConstrainedSystem::damped_force(const At& at, MutableVec f
 }
 
 std::optional<double> ConstrainedSystem::secant_friction(const BackwardRate& rate,
-                                                         MutableVec f) const {
-  const std::optional<double> power = damping_->secant_friction(rate, f);
+                                                         const ConstVec& v, MutableVec f) const {
+  const std::optional<double> power = damping_->secant_friction(rate, v, f);
   if (!power) return {};
   for (const Index i : unknowns_) f[i] = 0;
   return power;

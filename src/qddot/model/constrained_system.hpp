@@ -65,7 +65,8 @@ class ConstrainedSystem final : public CapableSystem {
   void friction(const At& at, MutableVec f) const override;
   std::optional<double> damped_force(const At& at, MutableVec f, MutableVec friction,
                                      BesideForce* beside) const override;
-  std::optional<double> secant_friction(const BackwardRate& rate, MutableVec f) const override;
+  std::optional<double> secant_friction(const BackwardRate& rate, const ConstVec& v,
+                                        MutableVec f) const override;
   void damping_matrix(const At& at, SymmetricMatrix& c) const override;
   bool damping_is_constant() const override { return damping_->damping_is_constant(); }
   bool bound_damping(SymmetricMatrix& l) const override;

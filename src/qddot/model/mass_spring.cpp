@@ -160,7 +160,8 @@ class MassSpring final : public CapableSystem {
       add_friction(at, f);
     }
   }
-  std::optional<double> secant_friction(const BackwardRate& rate, MutableVec f) const override {
+  std::optional<double> secant_friction(const BackwardRate& rate, const ConstVec& v,
+                                        MutableVec f) const override {
     if (!has_dashpots_) return {};
     const SpringLists<D>& springs = lists();
     const VecView q0 = rate.q0, q1 = rate.q1, q2 = rate.q2;
@@ -175,6 +176,10 @@ class MassSpring final : public CapableSystem {
           return dashpot.force;
         },
         f);
+    if (air_damping_ > 0) {
+      f -= air_damping_ * mass().cwiseProduct(v);
+      power += 2 * air_damping_ * kinetic(v);
+    }
     return power;
   }
   void damping_matrix(const At& at, SymmetricMatrix& c) const override {

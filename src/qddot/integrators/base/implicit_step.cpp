@@ -187,15 +187,10 @@ void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
 std::optional<double> ImplicitStep::find_secant_friction() {
   if (!q1_) return {};
   const Stopwatch watch(clock(), &Seconds::force);
-  const Damping& damping = *system().damping();
   secant_.resize(x_.size());
-  std::optional<double> power = damping.secant_friction({x_, *q1_, *q2_, rate_, a1_, a2_}, secant_);
-  if (!power) {
-    q1_ = nullptr;
-  } else if (const double alpha = damping.air_damping(); alpha > 0) {
-    secant_ -= alpha * system().mass().cwiseProduct(velocity_);
-    *power += 2 * alpha * system().kinetic(velocity_);
-  }
+  const BackwardRate rate{x_, *q1_, *q2_, rate_, a1_, a2_};
+  const auto power = system().damping()->secant_friction(rate, velocity_, secant_);
+  if (!power) q1_ = nullptr;
   return power;
 }
 

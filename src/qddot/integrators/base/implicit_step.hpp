@@ -99,8 +99,8 @@ class ImplicitStep : public Formula {
   double objective(const Vec& q, double s);
   // The stage's place and velocity in x_ and velocity_, as the arguments of friction.
   At at_friction(const Vec& q);
-  // Friction at x_ with the dashpots as springs in secant_, and its power; nothing if there are no
-  // lengths to go by.
+  // Friction at x_ and velocity_, with the dashpots as springs, in secant_, and its power; nothing
+  // if there are no lengths to go by.
   std::optional<double> find_secant_friction();
 
   const double tolerance_;

@@ -55,16 +55,11 @@ void LocalGlobal::gradient(const Vec& v, Vec& r) {
 double LocalGlobal::find_friction(const Vec& v) {
   q_ = now_->q + h_ * v;
   friction_.resize(q_.size());
-  const Damping& damping = *system().damping();
-  const auto secant =
-      damping.secant_friction({q_, now_->q, now_->q, 1 / h_, -1 / h_, 0}, friction_);
-  if (!secant) {
-    const double taken = power({t_, now_->q, v});
-    friction_ = friction();
-    return taken;
-  }
-  friction_ -= damping.air_damping() * system().mass().cwiseProduct(v);
-  return *secant + 2 * damping.air_damping() * system().kinetic(v);
+  const BackwardRate rate{q_, now_->q, now_->q, 1 / h_, -1 / h_, 0};
+  if (const auto taken = system().damping()->secant_friction(rate, v, friction_)) return *taken;
+  const double taken = power({t_, now_->q, v});
+  friction_ = friction();
+  return taken;
 }
 
 void LocalGlobal::direction(const Vec& r, Vec& p) {

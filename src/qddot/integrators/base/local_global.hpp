@@ -44,9 +44,7 @@ class LocalGlobal : public Formula {
   void gradient(const Vec& v, Vec& r);
   void direction(const Vec& r, Vec& p);
   double objective(const Vec& v);  // g [J]
-  // Sets friction_ where the step ends with v, and returns the power that it takes [W]. Dashpots
-  // are springs within the step, by l' = (l(q_n + h v) - l(q_n))/h; a system that knows no lengths
-  // has C as it is at q_n.
+  // Sets friction_ where the step ends with v, and returns the power that it takes [W].
   double find_friction(const Vec& v);
   // Moves v by the first of -p, -p/2, -p/4, ... that lowers g by Armijo's rule, or not at all if
   // rounding hides it. `g` is that of v, before and after.
