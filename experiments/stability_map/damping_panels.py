@@ -76,6 +76,17 @@ class Curve:
         return [(x, y) for x, y in self.points if low <= x <= high and not math.isnan(y)]
 
 
+def own_damping(modes):
+    """The damping of a scene's modes themselves, as (frequency in Hz, damping ratio) in ascending
+    order; empty where it has none."""
+    ratios = {
+        (row["omega"] / (2 * math.pi), float(row["damping_ratio_physical"]))
+        for row in modes
+        if row.get("damping_ratio_physical")
+    }
+    return sorted(ratios) if any(zeta > 0 for _, zeta in ratios) else []
+
+
 def alike(a, b, **tolerance):
     """Whether two numbers are one, or neither is known."""
     return math.isclose(a, b, **tolerance) or math.isnan(a) and math.isnan(b)
@@ -263,7 +274,7 @@ class DampingSheet:
             log_ticks(axes.xaxis, 9, "{:g}".format, subs=(1, 2, 5))
         axes.set_xlabel("natural frequency in Hz", fontsize=10, labelpad=2)
         named, all_marks, apart, unmeasured = [], [], 0.0, {}
-        physical = self.physical()
+        physical = own_damping(self.modes)
         if physical:
             axes.plot(*zip(*physical), color=INK, linewidth=5, alpha=0.3, zorder=2)
         for curve in self.curves:
@@ -301,18 +312,10 @@ class DampingSheet:
         scale = 1 / (2 * math.pi * h)
         low, high = min(r["h_omega"] for r in rows), max(r["h_omega"] for r in rows)
         # The curve is of an oscillator without damping.
-        dense = [] if self.physical() else curve.between(low, high)
+        dense = [] if own_damping(rows) else curve.between(low, high)
         between = [(x * scale, y) for x, y in dense]
         at = [(row["h_omega"] * scale, row["damping_ratio_predicted"]) for row in rows]
         return sorted({*between, *(point for point in at if not math.isnan(point[1]))})
-
-    def physical(self):
-        """The damping of the modes themselves, as (frequency in Hz, damping ratio); empty without."""
-        ratios = {
-            (row["omega"] / (2 * math.pi), float(row.get("damping_ratio_physical") or 0))
-            for row in self.modes
-        }
-        return sorted(ratios) if any(zeta > 0 for _, zeta in ratios) else []
 
     def chosen_rows(self):
         """The rows of methods that choose their steps, at the tolerance that is drawn."""

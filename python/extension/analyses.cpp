@@ -45,11 +45,20 @@ py::dict equilibrium(const HeldModel& held, double length) {
 py::dict modes(const HeldModel& held, Index count) {
   std::shared_ptr<const Model> model;
   NaturalModes lowest;
+  Vec zeta;
   double largest = 0;
   outside(1, [&](const std::stop_token&) {
     model = all_directions(held);
     lowest = lowest_modes(model->system(), model->initial().q, count);
     largest = largest_frequency(model->system(), model->initial().q);
+    // Slower motions are resisted by nothing, within rounding.
+    const double slowest = 1e-6 * largest;
+    zeta.setConstant(lowest.squares.size(), std::numeric_limits<double>::quiet_NaN());
+    for (Index j = 0; j < zeta.size(); ++j) {
+      if (!(lowest.squares[j] > slowest * slowest)) continue;
+      zeta[j] = damping_ratio(model->system(), model->initial().q, lowest.shapes.col(j),
+                              std::sqrt(lowest.squares[j]));
+    }
   });
   const int d = model->dimension();
   py::list shapes;
@@ -59,7 +68,8 @@ py::dict modes(const HeldModel& held, Index count) {
     shapes.append(array_of(nodes, &Node::velocity, d));
   }
   return py::dict(arg("squares") = array_of(lowest.squares), arg("shapes") = shapes,
-                  arg("omega_max") = largest, arg("finite") = finite_modes(model->system()));
+                  arg("zeta") = array_of(zeta), arg("omega_max") = largest,
+                  arg("finite") = finite_modes(model->system()));
 }
 
 py::dict linear_step(const std::string& name, double h_omega, const py::dict& given) {

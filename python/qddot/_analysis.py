@@ -49,11 +49,13 @@ class Modes:
     """The lowest natural modes about the start, by rank.
 
     squares: w^2 [1/s^2], below zero where a shape grows. shapes: (modes, nodes, dimension), x with
-    x'Mx = 1. omega_max [rad/s]: the largest natural frequency. finite: the number of all modes.
+    x'Mx = 1. zeta: each mode's own damping ratio, NaN where it does not vibrate. omega_max [rad/s]:
+    the largest natural frequency. finite: the number of all modes.
     """
 
     squares: Floats
     shapes: Floats
+    zeta: Floats
     omega_max: float
     finite: int
 

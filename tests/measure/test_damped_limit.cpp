@@ -45,6 +45,22 @@ BOOST_AUTO_TEST_CASE(leapfrog_methods_have_the_limit_of_their_lag_to_1e8) {
   BOOST_TEST(std::isnan(qddot::damped_limit(method_named("rk4"), 0.1)));
 }
 
+// Also of methods with memory, some of whose roots die later than the vibration.
+BOOST_AUTO_TEST_CASE(the_damping_of_a_short_step_is_that_of_the_vibration) {
+  for (const Method& method : methods()) {
+    if (!has_linear_step(method) || method.takes_damping() != Damped::by_any || method.order < 2 ||
+        !method.make)
+      continue;
+    for (const double zeta : {0.01, 0.1, 0.5}) {
+      const LinearStep step = linear_step(method, 0.1, {}, zeta);
+      // (h w)^2 = 1e-2 at order 2.
+      BOOST_TEST(std::abs(step.damping_ratio() - zeta) <= 0.02, method.name << " " << zeta);
+      BOOST_TEST(std::abs(step.period_error() - (1 / std::sqrt(1 - zeta * zeta) - 1)) <= 0.02,
+                 method.name << " " << zeta);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(rk4_has_the_limit_of_its_polynomial) {
   const auto r = [](std::complex<double> z) {
     return 1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.)));

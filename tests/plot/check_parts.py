@@ -202,6 +202,25 @@ class Damping(unittest.TestCase):
         sheet = damping_panels.DampingSheet.__new__(damping_panels.DampingSheet)
         self.assertEqual(sheet.predicted(curve, rows, 1 / (2 * math.pi)), [(0.5, 0.1)])
 
+    def test_that_of_a_damped_scene_goes_through_its_modes_alone(self):
+        points = [(0.5, 0.0), (0.7, 0.0), (1.0, 0.0)]
+        curve = damping_panels.Curve(["m"], points, [(1, 1)], None)
+        rows = [
+            {
+                "omega": 2 * math.pi * x,
+                "h_omega": x,
+                "damping_ratio_predicted": 2 * x,
+                "damping_ratio_physical": str(x),
+            }
+            for x in (1.0, 0.5)
+        ]
+        sheet = damping_panels.DampingSheet.__new__(damping_panels.DampingSheet)
+        line = sheet.predicted(curve, rows, 1 / (2 * math.pi))
+        self.assertEqual(line, [(0.5, 1.0), (1.0, 2.0)])
+        self.assertEqual(damping_panels.own_damping(rows), [(0.5, 0.5), (1.0, 1.0)])
+        rows = [row | {"damping_ratio_physical": "0"} for row in rows]
+        self.assertEqual(damping_panels.own_damping(rows), [])
+
 
 class Causes(unittest.TestCase):
     """The strip of failures, by cause."""

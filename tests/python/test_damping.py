@@ -78,6 +78,17 @@ class Damping(unittest.TestCase):
                     abs(own.energy.dissipated[-1] - drawn.energy.dissipated[-1]), 1e-9, method
                 )
 
+    def test_modes_have_their_damping_ratios(self):
+        for damping, air in ((0.02, 0.0), (0.0, 0.3), (0.02, 0.3)):
+            scene = pair(damping=damping, air_damping=air)
+            found = qddot.modes(scene, 2)
+            vibrates = found.squares > 1e-6 * found.omega_max**2
+            self.assertTrue(vibrates.any())
+            self.assertTrue(np.isnan(found.zeta[~vibrates]).all())
+            w = found.omega[vibrates]
+            expected = air / (2 * w) + damping / scene.stiffness[0] * w / 2
+            self.assertTrue(np.allclose(found.zeta[vibrates], expected, rtol=1e-9))
+
     def test_damping_that_cannot_be_is_refused(self):
         def made(damping, **given):
             system = qddot.System(

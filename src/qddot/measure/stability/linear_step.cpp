@@ -144,13 +144,21 @@ Responses in_units_of_a_step(Responses y, double h) {
 
 }  // namespace
 
+Complex LinearStep::principal() const {
+  if (zeta == 0 || spectral_radius() > 1) return roots.front();
+  const Complex slower = -zeta + std::sqrt(Complex(zeta * zeta - 1));
+  const Complex exact = std::exp(h_omega * slower);
+  return *std::ranges::min_element(roots, {},
+                                   [&](const Complex& root) { return std::abs(root - exact); });
+}
+
 double LinearStep::damping_ratio() const {
-  const Complex exponent = std::log(roots.front());  // of the modulus, and i times the angle
+  const Complex exponent = std::log(principal());  // of the modulus, and i times the angle
   return exponent == 0. ? 0 : -exponent.real() / std::abs(exponent);
 }
 
 double LinearStep::period_error() const {
-  const double angle = std::abs(std::arg(roots.front()));
+  const double angle = std::abs(std::arg(principal()));
   return angle == 0 ? std::numeric_limits<double>::infinity() : h_omega / angle - 1;
 }
 
@@ -167,10 +175,11 @@ LinearStep linear_step(const Method& method, double h_omega, Options options, do
   }
   if (zeta > 0 && method.takes_damping() != Damped::by_any)
     throw std::invalid_argument(method.name + " takes no dashpots");
-  if (method.recurrence_roots) return {h_omega, method.recurrence_roots(h_omega, zeta)};
+  if (method.recurrence_roots) return {h_omega, method.recurrence_roots(h_omega, zeta), zeta};
   options.step_size = h_omega;  // w = 1
   return {h_omega,
-          roots_of(in_units_of_a_step(respond(method, options, zeta), h_omega), root_rounding)};
+          roots_of(in_units_of_a_step(respond(method, options, zeta), h_omega), root_rounding),
+          zeta};
 }
 
 }  // namespace qddot::inline measure

@@ -14,12 +14,16 @@ namespace qddot::inline measure {
 struct LinearStep {
   double h_omega = 0;
   std::vector<std::complex<double>> roots{};  // the largest modulus first
+  double zeta = 0;                            // of the exact motion
 
   // The largest modulus: above 1 the vibration grows, below 1 it dies.
   double spectral_radius() const { return std::abs(roots.front()); }
-  // The damping ratio zeta of a damped oscillator with the same roots exp((-zeta +- i sqrt(1 -
-  // zeta^2)) w' h), where w' is the method's frequency for w (Hughes, The Finite Element Method,
-  // section 9.3). 1 if the method no longer vibrates; negative if it grows.
+  // The root that is to be the exact motion's: the first one and, with damping, that next to its
+  // root if nothing grows. Other roots of a method with memory may die later than the motion does.
+  std::complex<double> principal() const;
+  // The damping ratio zeta of a damped oscillator with the same principal roots exp((-zeta +- i
+  // sqrt(1 - zeta^2)) w' h), where w' is the method's frequency for w (Hughes, The Finite Element
+  // Method, section 9.3). 1 if the method no longer vibrates; negative if it grows.
   double damping_ratio() const;
   // The period of the damped vibration over the true one, minus 1; infinite if it does not vibrate.
   double period_error() const;
