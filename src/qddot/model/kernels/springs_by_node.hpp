@@ -56,8 +56,8 @@ class SpringsByNode {
   void multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const;
   void sum_stiffness_rows(const VecView& q, MutableVec sums) const;
 
-  bool has_dashpots() const { return !slices_.slot_dashpots.empty(); }
-  // friction = the forces of the dashpots [N] at q and v, if there are any. q, v, friction: n.
+  // friction = the forces of the dashpots [N] at q and v; for networks that have some. q, v,
+  // friction: n.
   void sum_friction(const VecView& q, const VecView& v, MutableVec friction) const;
   // The same, and f = weight + the forces of springs and dashpots, in one pass, with work beside it
   // unless that is nullptr.
