@@ -56,6 +56,11 @@ class MassSpring final : public CapableSystem {
 
   void force(const At& at, MutableVec f) const override {
     const VecView& q = at.q;
+    if (by_node_ && has_dashpots_ && at.v.size() > 0) {
+      Vec friction(size());
+      damped_force(at, f, friction, nullptr);
+      return;
+    }
     if (by_node_) {
       by_node_->sum_forces(q, f);
     } else {
@@ -352,12 +357,9 @@ class MassSpring final : public CapableSystem {
     return std::unique_ptr<const MassSpring>(new MassSpring(std::move(network), forces, layout_));
   }
 
+  // Not for dashpots that vectors sum.
   void add_friction(const At& at, MutableVec f) const {
-    if (by_node_ && has_dashpots_) {
-      Vec friction(size());
-      by_node_->sum_friction(at.q, at.v, friction);
-      f += friction;
-    } else if (has_dashpots_) {
+    if (has_dashpots_) {
       springs_->add_forces(
           [&](const auto& spring) {
             return dashpot_force(spring.law, springs_->between(at.q, spring),
