@@ -16,6 +16,7 @@
 #include "qddot/integrators/option_table.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/samples.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/chart_words.hpp"
@@ -53,12 +54,14 @@ void refuse_choices(const Program& program) {
   }
 }
 
-// Repeats the method's run for the outputs on its way; returns its end.
+// Repeats the run that was judged for the outputs on its way; returns its end.
 State seen(const Answer& answer, const std::shared_ptr<const Model>& model, double until,
            Outputs& output) {
   Simulation run(model, *answer.method, options_for(*answer.method, answer.value, *model));
   output.see(run.state());
-  run.advance(until, output.observer(), interruption());
+  Observer observer = output.observer();
+  observer.times = merged({observer.times, answer.looks});
+  run.advance(until, observer, interruption());
   return run.state();
 }
 

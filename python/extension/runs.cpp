@@ -114,6 +114,7 @@ py::dict answer(const HeldModel& held, double until, double accuracy, const std:
   if (!found.method) return record;
   record["method"] = found.method->name;
   record["value"] = found.value;
+  record["looks"] = found.looks;
   record["end"] = end_of(*held.model, found.end);
   record["energies"] = energies_of(*held.model, found.end);
   return record;

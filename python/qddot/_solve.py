@@ -396,9 +396,18 @@ def _answer(
         about["_diagnose"] = _diagnosis(start, chosen, options, end)
         about["_repeat"] = _repetition(start, chosen, options, end, record["summary"], threads)
         return _at_end(start.of, record, State(**record["end"]), about)
-    # Repeats the chosen run and records these times. It ends in the same state, except with methods
-    # that end steps at the times.
+    # Repeats the run that was judged, with its own looks, and records these times. It ends in the
+    # same state, except with methods that end steps at the times.
     left = None if seconds is None else max(seconds - record["seconds_in_all"], 1e-3)
-    run = _run(start, chosen, options, end, times, left, threads)
+    looks = np.union1d(times, record["looks"])
+    run = _run(start, chosen, options, end, [float(t) for t in looks], left, threads)
     message = record["why"] or run.message
-    return replace(run, **{**about, "message": message})
+    return replace(_at(run, times), **{**about, "message": message})
+
+
+def _at(run: Solution, times: list[float]) -> Solution:
+    """The solution at some of its times alone."""
+    asked = np.array([t for t in times if t <= run.t_reached])
+    rows = np.searchsorted(run.t, asked)
+    energy = run.energy and Energy(*(getattr(run.energy, f.name)[rows] for f in fields(Energy)))
+    return replace(run, t=run.t[rows], q=run.q[rows], v=run.v[rows], energy=energy)

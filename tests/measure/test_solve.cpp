@@ -228,6 +228,27 @@ BOOST_AUTO_TEST_CASE(the_path_and_the_energy_are_within_what_was_asked_for) {
   }
 }
 
+// A run that ends steps at its looks is another one without them, with other errors.
+BOOST_AUTO_TEST_CASE(a_run_on_the_path_is_repeated_with_its_looks_to_the_bit) {
+  bool any_looks = false;
+  for (const double damping_time : {0., 0.003, 0.03}) {
+    Scene scene = drawn("cloth", {{"nodes", 6}});
+    damp_springs(damping_time, scene);
+    const Model model(scene);
+    const double until = 0.1;
+    const Answer answer = measure::solve(model, until, {.accuracy = 1e-6, .of = AccuracyOf::path});
+    BOOST_TEST_REQUIRE(answer.is_reached, answer.why);
+    BOOST_TEST(answer.looks.empty() != answer.method->ends_steps_at_looks());
+    any_looks = any_looks || !answer.looks.empty();
+    State state = model.initial();
+    make_integrator(*answer.method, model.system(),
+                    options_for(*answer.method, answer.value, model))
+        ->advance(state, until, {answer.looks, [](const State&) {}});
+    BOOST_TEST((state.q == answer.end.q && state.v == answer.end.v));
+  }
+  BOOST_TEST(any_looks);
+}
+
 BOOST_AUTO_TEST_CASE(nodes_without_mass_are_taken_by_tolerance) {
   Scene scene = drawn("chain", {{"nodes", 4}, {"stiffness", 1000}});
   // A massless joint of three springs, which no reduction takes out.

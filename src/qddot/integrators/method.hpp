@@ -111,6 +111,8 @@ struct Method {
   bool listens_to(Option option) const { return takes.has(option); }
   // The damping that it takes.
   Damped takes_damping() const { return asks(Need::conservative) ? damped : Damped::by_any; }
+  // Whether it ends steps at the times of an Observer, so that those change its steps.
+  bool ends_steps_at_looks() const { return knob == Knob::rtol && !is(Trait::interpolates); }
   // Whether the method changes its order in a run.
   bool varies_order() const { return listens_to(Option::max_order); }
 };

@@ -32,9 +32,8 @@ double error_without_looks(const Search& search, const Trial& trial) {
   const Method& method = *trial.method;
   const Stage& stage = search.runs().stage();
   const bool is_alone = stage.model().system().has_massless();
-  const bool ends_at_looks = method.knob == Knob::rtol && !method.is(Trait::interpolates);
   const double error = search.check().bound(trial)->error;
-  return ends_at_looks && !is_alone && stage.of() != AccuracyOf::positions
+  return method.ends_steps_at_looks() && !is_alone && stage.of() != AccuracyOf::positions
              ? error / search.runs().rules().small
              : error;
 }

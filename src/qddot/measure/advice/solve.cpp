@@ -23,6 +23,8 @@ void fill(Answer& answer, const Search& search, const Trial& trial, const Model&
   answer.method = trial.method;
   answer.value = trial.value;
   answer.summary = trial.summary;
+  if (trial.method->ends_steps_at_looks() && !trial.only_end)
+    answer.looks = search.runs().stage().times();
   answer.end = trial.path.empty() ? model.initial() : trial.path.back();
   answer.nodes = model.expand(answer.end);
   answer.seconds.run = trial.seconds;

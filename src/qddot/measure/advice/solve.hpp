@@ -60,7 +60,10 @@ struct Answer {
   // The time [s] from which two motions that start one rounding apart are different, and the rate
   // [1/s] at which they part. Infinite and zero if this was not seen.
   double horizon = std::numeric_limits<double>::infinity(), lyapunov = 0;
-  Summary summary{};          // of the run
+  Summary summary{};  // of the run
+  // The times at which the run ended steps beside its own, if it did [s]. A run that repeats it has
+  // to do so as well, or its errors are others.
+  std::vector<double> looks{};
   State end{};                // the state it reached, in the model's unknowns
   std::vector<Node> nodes{};  // all nodes of the scene in that state
   int runs = 0;               // made in all
