@@ -33,7 +33,7 @@ nlohmann::json record_of(const DriftRun& run) {
   return {{"method", run.method->name},
           {"value", run.value},
           {"summary", run.summary},
-          {"dissipated", run.summary.dissipated},
+          {"dissipated", run.summary.work.dissipated},
           {"seconds", run.seconds},
           {"scales", run.scales},
           {"energy", run.energy},
@@ -52,7 +52,7 @@ DriftRun drift_run_of(const nlohmann::json& record) {
                .linear = trend_in(record.at("linear")),
                .angular = trend_in(record.at("angular")),
                .path = record.at("path")};
-  run.summary.dissipated = record.at("dissipated");
+  run.summary.work.dissipated = record.at("dissipated");
   return run;
 }
 

@@ -204,7 +204,7 @@ nlohmann::json to_json(const Reference& r) {
       {"t", r.end.t},
       {"q", list(r.end.q)},
       {"v", list(r.end.v)}};
-  if (r.end.dissipated != 0) json["dissipated"] = r.end.dissipated;  // of damped scenes
+  if (r.end.work.dissipated != 0) json["dissipated"] = r.end.work.dissipated;  // of damped scenes
   return json;
 }
 

@@ -204,7 +204,7 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
     const std::string motion = place + file_name;
     if (scene_.system().damping()) {
-      energy_.row(motion, state.t, kinetic, potential, kinetic + potential, state.dissipated);
+      energy_.row(motion, state.t, kinetic, potential, kinetic + potential, state.work.dissipated);
     } else {
       energy_.row(motion, state.t, kinetic, potential, kinetic + potential);
     }

@@ -41,7 +41,7 @@ class Bdf2 final : public ImplicitStep {
     if (w > 0) u_ = known_ + c * h * (now.v + w * (now.v - last_.v));
     if (is_damped()) {
       set_velocity(1 / (c * h), -known_ / (c * h));
-      set_lengths(-(1 + back) / (c * h), now.q, back / (c * h), last_.q);
+      set_lengths(-(1 + back) / (c * h), now, back / (c * h), last_);
     }
     if (const Outcome outcome = solve_stage(now.q, next.t, c * c * h * h);
         outcome != Outcome::reached_end) {
@@ -49,11 +49,12 @@ class Bdf2 final : public ImplicitStep {
     }
     next.q = now.q + u_;
     next.v = (u_ - known_) / (c * h);
-    if (is_damped()) {
-      next.dissipated =
-          now.dissipated + back * (now.dissipated - last_.dissipated) + c * h * stage_power(now.q);
-      last_.dissipated = now.dissipated;
+    if (does_work()) {
+      next.work =
+          now.work + back * (now.work - last_.work) + c * h * stage_power(now.q);
+      last_.work = now.work;
     }
+    last_.t = now.t;
     last_.q = now.q;
     last_.v = now.v;
     last_h_ = h;

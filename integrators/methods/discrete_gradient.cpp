@@ -35,16 +35,32 @@ class EnergyMomentum final : public ImplicitStep {
       return outcome;
     }
     a_ = (u_ - free_) / s;
-    if (is_damped()) next.dissipated = now.dissipated + h * stage_power(now.q);
     next.q = now.q + u_;
+    if (does_work()) next.work = now.work + work_of_step(now, h, next);
     next.v = 2 / h * u_ - now.v;
     return Outcome::reached_end;
   }
 
  private:
+  // The mean force is that of the middle of the step in time. So driving gives the changes of V in
+  // time at both ends, and the balance is exact.
+  Work work_of_step(const State& now, double h, const State& next) {
+    Work work;
+    if (is_damped()) {
+      work.dissipated = h * stage_power(now.q).dissipated;
+      if (is_driven()) work.driven = h * driving_power().dissipated;
+    }
+    if (const Driving* driving = system().driving()) {
+      const double middle = now.t + h / 2;
+      work.driven += driving->potential_change(now.t, middle, now.q) +
+                     driving->potential_change(middle, next.t, next.q);
+    }
+    return work;
+  }
+
   void stage_force(const Vec& q, const Vec& u, Vec& f) override {
     x_ = q + u;
-    mean_force(q, x_, f);
+    mean_force({stage_time(), q}, {stage_time(), x_}, f);
     if (!is_damped()) return;
     stage_power(q);
     f += friction();
@@ -53,7 +69,7 @@ class EnergyMomentum final : public ImplicitStep {
   void stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
                        SymmetricMatrix& k) override {
     x_ = q + u / 2;
-    run_.counted().weighted_stiffness(x_, compression_weight, k);
+    run_.counted().weighted_stiffness({stage_time(), x_}, compression_weight, k);
     k.coeffs() /= 2;
   }
   bool is_minimisation() const override { return false; }
@@ -71,7 +87,7 @@ Method discrete_gradient() {
           .source = "Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, section 4",
           .order = 2,
           .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
-          .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient, Need::autonomous},
+          .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient, Need::balance_in_time},
           .takes = {Option::solve_tolerance, Option::solver},
           .damped = Damped::by_any,
           .make = create<EnergyMomentum>};

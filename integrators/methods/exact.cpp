@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include "qddot/analysis/exponential_motion.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/integrators/base/fixed_steps.hpp"
@@ -57,6 +58,10 @@ class Exact final : public Formula {
                               has_modes_ ? "all modes" : "the exponential of their matrix", most));
       return Outcome::solver_failed;
     }
+    if (is_driven() && !has_modes_) {
+      set_message("dashpots couple modes, and this method drives only modes that stay apart");
+      return Outcome::solver_failed;
+    }
     if (!is_constant_) {
       set_message("dashpots turn with their springs, and this method is for constant C");
       return Outcome::stiffness_varies;
@@ -71,15 +76,40 @@ class Exact final : public Formula {
       }
       exponential_->propagate(now, next);
     }
-    // The motion is exact, so what its energy has lost is what friction has taken.
-    if (is_damped()) {
-      next.dissipated =
-          now.dissipated + (total_energy(system(), now) - total_energy(system(), next));
-    }
+    if (does_work()) set_work(now, next);
     return Outcome::reached_end;
   }
 
  private:
+  // The motion is exact. So what its energy has lost, and driving has given, is what friction has
+  // taken; and without friction, driving has given what the energy has gained.
+  void set_work(const State& now, State& next) {
+    const double lost = total_energy(system(), now) - total_energy(system(), next);
+    next.work = now.work;
+    if (!is_driven()) {
+      next.work.dissipated += lost;
+    } else if (!is_damped()) {
+      next.work.driven -= lost;
+    } else {
+      const double driven = driven_between(now, next.t);
+      next.work += Work{lost + driven, driven};
+    }
+  }
+  // The integral of the power along the motion.
+  double driven_between(const State& from, double t) {
+    constexpr unsigned points = 31, most_halvings = 15;
+    constexpr double tolerance = 1e-13;
+    State at;
+    LinearMotion::Scratch scratch;
+    const auto power_at = [&](double s) {
+      if (!(s > from.t)) return power(from).driven;
+      motion_->propagate(from, s - from.t, at, scratch);
+      return power(at).driven;
+    };
+    return boost::math::quadrature::gauss_kronrod<double, points>::integrate(
+        power_at, from.t, t, most_halvings, tolerance);
+  }
+
   std::shared_ptr<const LinearMotion> motion_;
   LinearMotion::Scratch scratch_;
   std::optional<ExponentialMotion> exponential_;
@@ -95,7 +125,7 @@ Method exact() {
       .source = "superposition of modes, derived in src/qddot/analysis/linear_motion.hpp",
       .order = 0,
       .traits = {Trait::symplectic, Trait::reversible},
-      .needs = {Need::conservative, Need::stiffness, Need::constant_stiffness, Need::autonomous},
+      .needs = {Need::conservative, Need::stiffness, Need::constant_stiffness, Need::known_in_time},
       .damped = Damped::by_any,
       .make = create<Exact>};
 }

@@ -16,7 +16,7 @@ class ExplicitEuler final : public Formula {
 
   Outcome step(const State& now, double h, State& next) {
     force(now, f_);
-    if (is_damped()) next.dissipated = now.dissipated + h * power();
+    if (does_work()) next.work = now.work + h * power();
     add_scaled(now.q, h, now.v, next.q);
     add_quotient(now.v, h, f_, system().mass(), next.v);
     return Outcome::reached_end;

@@ -81,10 +81,10 @@ class GeneralizedAlpha : public ImplicitStep {
     next.q = now.q + u_ / (1 - alpha_.f);
     next.v = now.v + h * ((1 - gamma) * last_a_ + gamma * a_);
     last_h_ = h;
-    if (is_damped()) {
+    if (does_work()) {
       // The trapezoidal rule, at the ends of steps.
-      const double power = this->power({next.t, next.q, next.v});
-      next.dissipated = now.dissipated + h / 2 * (power_ + power);
+      const Work power = this->power({next.t, next.q, next.v});
+      next.work = now.work + h / 2 * (power_ + power);
       power_ = power;
     }
     return Outcome::reached_end;
@@ -93,7 +93,7 @@ class GeneralizedAlpha : public ImplicitStep {
  private:
   const Alphas alpha_;
   Vec a_{system().size()}, last_a_{system().size()};
-  double power_ = 0;   // v'Cv at the start of a step [W]
+  Work power_;   // v'Cv at the start of a step [W]
   double last_h_ = 0;  // 0: no step yet, and a_ is that of the start
 };
 

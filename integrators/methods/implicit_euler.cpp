@@ -21,7 +21,7 @@ class ImplicitEuler final : public ImplicitStep {
     u_ = free_;
     if (is_damped()) {
       set_velocity(1 / h);
-      set_lengths(-1 / h, now.q, 0, now.q);
+      set_lengths(-1 / h, now, 0, now);
     }
     if (const Outcome outcome = solve_stage(now.q, next.t, h * h);
         outcome != Outcome::reached_end) {
@@ -29,7 +29,7 @@ class ImplicitEuler final : public ImplicitStep {
     }
     next.q = now.q + u_;
     next.v = u_ / h;
-    if (is_damped()) next.dissipated = now.dissipated + h * stage_power(now.q);
+    if (does_work()) next.work = now.work + h * stage_power(now.q);
     return Outcome::reached_end;
   }
 };

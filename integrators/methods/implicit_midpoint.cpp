@@ -29,7 +29,7 @@ class ImplicitMidpoint final : public ImplicitStep {
       return outcome;
     }
     a_ = (u_ - free_) / s;
-    if (is_damped()) next.dissipated = now.dissipated + h * stage_power(now.q);
+    if (does_work()) next.work = now.work + h * stage_power(now.q);
     next.q = now.q + 2 * u_;
     next.v = 4 / h * u_ - now.v;
     return Outcome::reached_end;

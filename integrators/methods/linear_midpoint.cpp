@@ -86,12 +86,13 @@ class LinearMidpoint final : public Formula {
   Outcome step(const State& now, double h, State& next) {
     next.q = now.q;
     next.v = now.v;
-    next.dissipated = now.dissipated;
+    next.work = now.work;
     double before = 0, t = now.t;
     for (const double g : gamma) {
       t += (before + g) * h / 2;
       next.q += ((before + g) * h / 2) * next.v;
       force({t, next.q, next.v}, f_);
+      if (is_driven() && !is_damped()) next.work += g * h * driving_power();
       if (const Outcome outcome = kick(g * h, t, next); outcome != Outcome::reached_end) {
         return outcome;
       }
@@ -110,7 +111,7 @@ class LinearMidpoint final : public Formula {
       if (outcome != Outcome::reached_end) return outcome;
       if (is_damped()) {
         mean_ = next.v + h / 2 * change_;
-        next.dissipated += h * power({t, next.q, mean_});
+        next.work += h * power({t, next.q, mean_});
       }
       next.v += h * change_;
       return outcome;

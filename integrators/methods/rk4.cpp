@@ -25,7 +25,7 @@ class Rk4 final : public Formula {
     const Mass& mass = system().mass();
     const double middle = now.t + h / 2;
     force(now, f_);
-    if (is_damped()) next.dissipated = now.dissipated + h / 6 * power();
+    if (does_work()) next.work = now.work + h / 6 * power();
     add_scaled(now.q, h / 2, now.v, q_);
     add_scaled(now.q, h / 6, now.v, next.q);
     add_quotient(now.v, h / 6, f_, mass, next.v);
@@ -43,7 +43,7 @@ class Rk4 final : public Formula {
   // Computes f at a stage and adds `weight` times the stage's rate to `next`.
   void add_stage(const At& stage, double weight, State& next) {
     force(stage, f_);
-    if (is_damped()) next.dissipated += weight * power();
+    if (does_work()) next.work += weight * power();
     add_scaled(next.q, weight, stage.v, next.q);
     add_quotient(next.v, weight, f_, system().mass(), next.v);
   }

@@ -19,7 +19,7 @@ class Rk8 final : public Formula {
   using Formula::Formula;
 
   Outcome step(const State& now, double h, State& next) {
-    next.dissipated = now.dissipated;
+    next.work = now.work;
     for (std::size_t i = 0; i < pair_.c.size(); ++i) {
       const std::span<const double> row = pair_.a[i];
       add_combination(now.q, h, v_, row, stage_.q);
@@ -29,7 +29,7 @@ class Rk8 final : public Formula {
       const auto column = static_cast<Index>(i);
       v_.col(column) = stage_.v;
       divide(f_, system().mass(), a_.col(column));
-      if (is_damped()) next.dissipated += h * pair_.b[i] * power();
+      if (does_work()) next.work += h * pair_.b[i] * power();
     }
     add_combination(now.q, h, v_, pair_.b, next.q);
     add_combination(now.v, h, a_, pair_.b, next.v);

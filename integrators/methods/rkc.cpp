@@ -71,7 +71,7 @@ class Rkc final : public Formula {
   // y and its energy that friction has taken, and F there.
   struct Rate {
     Vec v, a;
-    double power = 0;
+    Work power;
   };
 
  public:
@@ -100,7 +100,7 @@ class Rkc final : public Formula {
     const double first = coefficients_.first * h;
     add_scaled(x.q, first, first_.v, now_.q);
     add_scaled(x.v, first, first_.a, now_.v);
-    now_.dissipated = x.dissipated + first * first_.power;
+    now_.work = x.work + first * first_.power;
     now_.t = x.t + coefficients_.c_first * h;
     for (const Stage& stage : coefficients_.later) {
       evaluate(now_, last_);
@@ -109,8 +109,8 @@ class Rkc final : public Formula {
                h * (stage.m_rate * last_.v + stage.g_rate * first_.v);
       next.v = rest * x.v + stage.m * now_.v + stage.n * before_.v +
                h * (stage.m_rate * last_.a + stage.g_rate * first_.a);
-      next.dissipated = rest * x.dissipated + stage.m * now_.dissipated +
-                        stage.n * before_.dissipated +
+      next.work = rest * x.work + stage.m * now_.work +
+                        stage.n * before_.work +
                         h * (stage.m_rate * last_.power + stage.g_rate * first_.power);
       std::swap(before_, now_);
       std::swap(now_, next);

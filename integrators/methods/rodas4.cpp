@@ -45,7 +45,7 @@ Method rodas4() {
           .order = 4,
           .knob = Knob::rtol,
           .traits = {Trait::implicit, Trait::interpolates},
-          .needs = {Need::conservative, Need::stiffness, Need::autonomous},
+          .needs = {Need::conservative, Need::stiffness, Need::rate_in_time},
           .takes = {Option::solver},
           .why_not_damped = "its order needs the derivative of friction by positions",
           .make = make};

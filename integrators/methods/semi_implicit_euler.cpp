@@ -30,13 +30,13 @@ class SemiImplicitEuler final : public Formula {
   Outcome step(const State& now, double h, State& next) {
     const At at(next.t, now.q);
     force(at, f_);
-    if (!factorize(at, h)) return indefinite_at(now.q);
+    if (!factorize(at, h)) return indefinite_at(at);
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
     if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
       return outcome;
     }
-    if (is_damped()) {
-      next.dissipated = now.dissipated + h * power({next.t, now.q, next.v});
+    if (does_work()) {
+      next.work = now.work + h * power({next.t, now.q, next.v});
     }
     next.q = now.q + h * next.v;
     return Outcome::reached_end;

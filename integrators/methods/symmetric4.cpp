@@ -41,7 +41,7 @@ namespace {
 class Damped4 final : public Formula {
   struct Point {
     Vec a;
-    double power = 0;
+    Work power;
   };
 
  public:
@@ -71,8 +71,8 @@ class Damped4 final : public Formula {
       next.q = x.q + next.d;
       next.v = next.d / h + h * (9. / 8 * x.now.a - 11. / 12 * x.ago1.a + 7. / 24 * x.ago2.a);
       evaluate(next, next.now);
-      next.dissipated =
-          x.dissipated +
+      next.work =
+          x.work +
           h / 24 * (9 * next.now.power + 19 * x.now.power - 5 * x.ago1.power + x.ago2.power);
     }
     next.begun = h == options().step_size ? std::min<Index>(x.begun + 1, 3) : 0;
@@ -105,7 +105,7 @@ class Damped4 final : public Formula {
     }
     next.q = at.q;
     next.v = at.v;
-    next.dissipated = at.dissipated;
+    next.work = at.work;
     next.d = next.q - x.q;
     evaluate(next, next.now);
   }
@@ -127,7 +127,7 @@ class Damped4 final : public Formula {
       force(stage, f_);
       at.q += weights[i] * h * stage.v;
       add_quotient(at.v, weights[i] * h, f_, mass, at.v);
-      at.dissipated += weights[i] * h * power();
+      at.work += weights[i] * h * power();
     }
   }
 

@@ -26,8 +26,9 @@ class SymplecticEuler final : public Formula {
     force(now, f_);
     v_.add_quotient(now.v, h, f_, system().mass(), next.v);
     q_.add_scaled(now.q, h, next.v, next.q);
+    if (does_work()) next.work = now.work + h * driving_power();
     // The kick's work of friction: h times the mean of the velocities before and after it.
-    if (is_damped()) next.dissipated = now.dissipated - h / 2 * (now.v + next.v).dot(friction());
+    if (is_damped()) next.work.dissipated -= h / 2 * (now.v + next.v).dot(friction());
     return Outcome::reached_end;
   }
 

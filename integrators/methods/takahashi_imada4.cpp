@@ -6,6 +6,7 @@
 // Alone such a step has order 2. Its error of second order is a change of coordinates
 // (Rowlands). This change is made before the first step and undone where a state is shown:
 //   q <- q + s M^-1 f(q),   v <- v - s M^-1 K(q) v,   s = h^2/24
+// With forces of time, K v stands for df/dt along the motion, and t moves with x.
 // So the method has order 4, with two forces a step. On a vibration q'' = -w^2 q, with z = h^2 w^2,
 // a step turns by the angle of cosine 1 - z/2 + z^2/24. No vibration grows for h w < sqrt 12.
 #include <cmath>
@@ -26,9 +27,10 @@ namespace {
 //   v + s M^-1 K v = v + s/h M^-1 (F+ - F-).
 // Its next term for v does not make energies more accurate.
 class TakahashiImada4 final : public Formula {
-  // The forces of a step, at its middle and shifted.
+  // The forces of a step, at its middle and shifted, and the power of driving at both.
   struct Kick {
     Vec f, shifted;
+    Work power, shifted_power;
   };
 
  public:
@@ -38,6 +40,7 @@ class TakahashiImada4 final : public Formula {
     Kick behind, ahead;
     bool is_shown = false;  // whether the state is known:
     Vec shown_q, shown_v;
+    Work shown_work;
   };
 
   using Formula::Formula;
@@ -64,12 +67,13 @@ class TakahashiImada4 final : public Formula {
     look_ahead(from, h);
     add_quotient(from.v, h, from.ahead.shifted, system().mass(), next.v);
     add_scaled(middle_, h / 2, next.v, next.q);
+    next.work = from.work + h * from.ahead.shifted_power;
     std::swap(from.ahead, next.behind);
     next.has_begun = true;
     from.has_ahead = next.has_ahead = next.is_shown = false;
     if (is_last) {
       look_ahead(next, h);
-      leave(next, h, next.q, next.v);
+      leave(next, h, next.q, next.v, next.work);
       next.has_begun = false;
     }
     return Outcome::reached_end;
@@ -78,11 +82,15 @@ class TakahashiImada4 final : public Formula {
   void show(X& x, bool may_evaluate, State& state) {
     if (x.has_begun && may_evaluate && !x.is_shown) {
       look_ahead(x, options().step_size);
-      leave(x, options().step_size, x.shown_q, x.shown_v);
+      x.shown_work = x.work;
+      leave(x, options().step_size, x.shown_q, x.shown_v, x.shown_work);
       x.is_shown = true;
     }
-    state.q = x.has_begun && x.is_shown ? x.shown_q : x.q;
-    state.v = x.has_begun && x.is_shown ? x.shown_v : x.v;
+    const bool is_other = x.has_begun && x.is_shown;
+    state.t = x.t;
+    state.q = is_other ? x.shown_q : x.q;
+    state.v = is_other ? x.shown_v : x.v;
+    state.work = is_other ? x.shown_work : x.work;
   }
 
  private:
@@ -90,9 +98,12 @@ class TakahashiImada4 final : public Formula {
   void look_ahead(X& x, double h) {
     add_scaled(x.q, h / 2, x.v, middle_);
     if (x.has_ahead) return;
-    force(middle_, x.ahead.f);
+    const double t = x.t + h / 2;
+    force({t, middle_}, x.ahead.f);
+    x.ahead.power = driving_power();
     add_quotient(middle_, h * h / 12, x.ahead.f, system().mass(), x_);
-    force(x_, x.ahead.shifted);
+    force({t, x_}, x.ahead.shifted);
+    x.ahead.shifted_power = driving_power();
     x.has_ahead = true;
   }
 
@@ -101,27 +112,32 @@ class TakahashiImada4 final : public Formula {
   void enter(double h) {
     const double s = h * h / 24, e = 1e-3 * h;
     const Mass& mass = system().mass();
+    const double t = state_.t;
     X& to = entered_;
     add_scaled(state_.q, e, state_.v, x_);
-    force(x_, to.ahead.f);
+    force({t + e, x_}, to.ahead.f);
+    to.work = state_.work - s / (2 * e) * driving_power();
     add_scaled(state_.q, -e, state_.v, x_);
-    force(x_, to.behind.f);
+    force({t - e, x_}, to.behind.f);
+    to.work += s / (2 * e) * driving_power();
     add_quotient(state_.v, -s / (2 * e), to.ahead.f, mass, to.v);
     add_quotient(to.v, s / (2 * e), to.behind.f, mass, to.v);
-    force(state_.q, to.ahead.f);
+    force({t, state_.q}, to.ahead.f);
     add_quotient(state_.q, s, to.ahead.f, mass, to.q);
+    to.t = t;
     to.has_ahead = false;
   }
 
   // Transforms x, which a step h has reached and whose forces ahead are known, to the motion's own
-  // coordinates; q and v may be those of x.
-  void leave(const X& x, double h, Vec& q, Vec& v) {
+  // coordinates; q, v and work may be those of x.
+  void leave(const X& x, double h, Vec& q, Vec& v, Work& work) {
     const double s = h * h / 24;
     const Mass& mass = system().mass();
     x_ = 3 * (x.behind.f + x.ahead.f) - (x.behind.shifted + x.ahead.shifted);
     add_quotient(x.q, -s / 4, x_, mass, q);
     add_quotient(x.v, s / h, x.ahead.f, mass, v);
     add_quotient(v, -s / h, x.behind.f, mass, v);
+    work = work + s / h * (x.ahead.power - x.behind.power);
   }
 
   X entered_;
@@ -154,7 +170,7 @@ Method takahashi_imada4() {
           .stability_limit = std::sqrt(12),
           .recurrence_roots = roots,
           .traits = {Trait::remembers_steps},
-          .needs = {Need::conservative, Need::autonomous},
+          .needs = {Need::conservative},
           .why_not_damped = "its change of coordinates is for forces of positions",
           .make = create<TakahashiImada4>};
 }

@@ -34,9 +34,9 @@ class Trapezoidal final : public ImplicitStep {
     next.q = now.q + u_;
     next.v = 2 / h * u_ - now.v;  // u = h/2 (v_n + v_{n+1})
     a_ = (u_ - free_) / s;
-    if (is_damped()) {
-      const double power = stage_power(now.q);
-      next.dissipated = now.dissipated + h / 2 * (power_ + power);
+    if (does_work()) {
+      const Work power = stage_power(now.q);
+      next.work = now.work + h / 2 * (power_ + power);
       power_ = power;
     }
     return Outcome::reached_end;
@@ -44,7 +44,7 @@ class Trapezoidal final : public ImplicitStep {
 
  private:
   Vec a_{system().size()};
-  double power_ = 0;  // v'Cv at the start of a step [W]
+  Work power_;  // v'Cv at the start of a step [W]
 };
 
 }  // namespace

@@ -35,8 +35,8 @@ class TrBdf2 final : public ImplicitStep {
     ug_ = u_;
     vg_ = u_ / c - now.v;
     a_ = (u_ - free_) / s;
-    double dissipated = 0;  // in the step
-    if (is_damped()) dissipated = c * (power_ + stage_power(now.q));
+    Work work;  // in the step
+    if (does_work()) work = c * (power_ + stage_power(now.q));
 
     free_ = b * ug_ + c * (now.v + b * (vg_ - now.v));
     u_ = free_ + s * a_;
@@ -47,16 +47,16 @@ class TrBdf2 final : public ImplicitStep {
     next.q = now.q + u_;
     next.v = (u_ - b * ug_) / c;
     a_ = (u_ - free_) / s;
-    if (is_damped()) {
+    if (does_work()) {
       power_ = stage_power(now.q);
-      next.dissipated = now.dissipated + b * dissipated + c * power_;
+      next.work = now.work + b * work + c * power_;
     }
     return Outcome::reached_end;
   }
 
  private:
   Vec a_{system().size()};
-  double power_ = 0;  // v'Cv at the start of a step [W]
+  Work power_;  // v'Cv at the start of a step [W]
   Vec ug_{system().size()}, vg_{system().size()};
 };
 

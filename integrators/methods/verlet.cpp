@@ -49,6 +49,7 @@ class Verlet final : public Formula {
     Vec f, friction;           // at q; the latter only with damping
     double half = 0;           // the kick that v lacks [s]
     double squared_speed = 0;  // |v|^2 with that kick
+    Work driving;              // its power at q
   };
 
   using Formula::Formula;
@@ -60,23 +61,20 @@ class Verlet final : public Formula {
     x.f.resize(state.q.size());
     x.half = 0;
     force(state, x.f);
+    x.driving = driving_power();
     if (is_damped()) x.friction = friction();
   }
 
   Outcome step(const X& x, double h, X& next) {
-    if (is_damped()) return step_damped(x, h, next);
-    const Mass& mass = system().mass();
-    if (options().compensated) {
-      v_.add_quotient(x.v, h / 2, x.f, mass, next.v);
-      q_.add_scaled(x.q, h, next.v, next.q);
-      force({next.t, next.q}, next.f);
-      v_.add_quotient(next.v, h / 2, next.f, mass, next.v);
-      return Outcome::reached_end;
+    if (is_damped()) {
+      step_damped(x, h, next);
+    } else {
+      step_undamped(x, h, next);
     }
-    KicksAndDrift kicks({x.q, x.v, x.f, mass}, {x.half, h / 2, h}, next.q, next.v);
-    kicks.see_speed(h / 2, next.f);
-    next.half = h / 2;
-    next.squared_speed = force_beside({next.t, next.q}, next.f, kicks);
+    if (is_driven()) {
+      next.driving = driving_power();
+      next.work += h / 2 * (x.driving + next.driving);
+    }
     return Outcome::reached_end;
   }
 
@@ -90,7 +88,23 @@ class Verlet final : public Formula {
   }
 
  private:
-  Outcome step_damped(const X& x, double h, X& next) {
+  void step_undamped(const X& x, double h, X& next) {
+    next.work = x.work;
+    const Mass& mass = system().mass();
+    if (options().compensated) {
+      v_.add_quotient(x.v, h / 2, x.f, mass, next.v);
+      q_.add_scaled(x.q, h, next.v, next.q);
+      force({next.t, next.q}, next.f);
+      v_.add_quotient(next.v, h / 2, next.f, mass, next.v);
+      return;
+    }
+    KicksAndDrift kicks({x.q, x.v, x.f, mass}, {x.half, h / 2, h}, next.q, next.v);
+    kicks.see_speed(h / 2, next.f);
+    next.half = h / 2;
+    next.squared_speed = force_beside({next.t, next.q}, next.f, kicks);
+  }
+
+  void step_damped(const X& x, double h, X& next) {
     const Mass& mass = system().mass();
     if (options().compensated) {
       add_quotient(x.v, h, x.f, mass, predicted_);
@@ -104,10 +118,10 @@ class Verlet final : public Formula {
       next.squared_speed = force_beside({next.t, next.q, predicted_}, next.f, kicks);
     }
     take_friction(next.friction);
-    next.dissipated = x.dissipated - h / 4 *
-                                         (product_with_sum(x.v, half_, x.friction) +
-                                          product_with_sum(half_, next.v, next.friction));
-    return Outcome::reached_end;
+    next.work = x.work;
+    next.work.dissipated -= h / 4 *
+                            (product_with_sum(x.v, half_, x.friction) +
+                             product_with_sum(half_, next.v, next.friction));
   }
 
   // Velocities, with damping.

@@ -31,6 +31,7 @@
 #include "qddot/analysis/stability.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/model/constrained_system.hpp"
+#include "qddot/model/frozen_in_time.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::registered {
@@ -61,7 +62,9 @@ class Ida final : public Library {
     if (!system().has_massless()) return;
     std::vector<bool> has_mass;
     for (const double mass : system().mass()) has_mass.push_back(mass > 0);
-    massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), &system()), has_mass);
+    const System* whole = &system();
+    if (!whole->is_autonomous()) whole = &frozen_.emplace(system(), 0);
+    massless_.emplace(std::shared_ptr<const System>(std::shared_ptr<void>(), whole), has_mass);
     tolerated_ = clone(atol());
     check(IDAWFtolerances(ida(), weights), "IDAWFtolerances");
   }
@@ -99,7 +102,7 @@ class Ida final : public Library {
     for (Index i = 0; i < system().size(); ++i) {
       rate.v[i] = system().mass()[i] > 0 ? rate.v[i] / system().mass()[i] : 0;
     }
-    if (has_dissipated(y())) dissipated(rate_.get()) = power();
+    if (has_work(y())) work(rate_.get()) = power().taken();
   }
 
   int take_step(double t_stop, double& t) override {
@@ -111,7 +114,7 @@ class Ida final : public Library {
       N_VScale(1, atol(), tolerated_->get());
       Halves at(tolerated_->get());
       set_massless(at.q, Vec::Constant(system().size(), most_rounded()));
-      tolerate_rounding();
+      tolerate_rounding(t);
     }
     int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
     const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
@@ -127,13 +130,14 @@ class Ida final : public Library {
       is_lost_ = has_failed();
     }
     if (flag < 0 || !massless_) return flag;
-    if (is_rough_) tolerate_rounding();
+    if (frozen_) frozen_->set_time(t);
+    if (is_rough_) tolerate_rounding(t);
     set_massless(Halves(y()).v, Halves(rate_.get()).q);
     is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + options().speed));
     if (is_lost_) return IDA_CONV_FAIL;
     // After a short last step, q' would be the difference of two positions, each only right to the
     // tolerance.
-    if (t == t_stop) set_massless_velocities();
+    if (t == t_stop) set_massless_velocities(t);
     return flag;
   }
 
@@ -141,12 +145,13 @@ class Ida final : public Library {
   // they do not balance or only farther away than `farthest` along some axis [m].
   int make_consistent(double t_start, double farthest = std::numeric_limits<double>::infinity()) {
     Halves at(y());
+    if (frozen_) frozen_->set_time(t_start);
     const Equilibrium balance = find_equilibrium(*massless_, at.q, options().length);
     if (balance.outcome != Equilibrium::Outcome::reached) return IDA_CONV_FAIL;
     if ((balance.q - at.q).lpNorm<Eigen::Infinity>() > farthest) return IDA_CONV_FAIL;
     at.q = balance.q;
     if (is_loose()) return IDA_CONV_FAIL;
-    set_massless_velocities();
+    set_massless_velocities(t_start);
     set_rate_of_masses(t_start);
     set_massless(at.v, Vec::Zero(system().size()));
     earlier_ = own_counts();
@@ -182,16 +187,21 @@ class Ida final : public Library {
     return is_singular ? std::numeric_limits<double>::quiet_NaN() : a;
   }
 
-  // Sets the velocities of massless nodes that keep their forces balanced, (a M - K) x = a M v.
-  void set_massless_velocities() {
+  // Sets the velocities of massless nodes that keep their forces balanced: (a M - K) x = a M v, or
+  // df/dt for massless nodes.
+  void set_massless_velocities(double t) {
     Halves at(y());
     SymmetricMatrix k = system().stiffness_pattern();  // Newton's matrix still needs its own K
-    stiffness(at.q, k);
+    stiffness({t, at.q}, k);
     EffectiveMass heavy(system());
     const double a = hold_masses(heavy, k);
     if (std::isnan(a)) return;
-    Vec x;
-    heavy.solve(a * system().mass().cwiseProduct(at.v), x);
+    Vec x, b = a * system().mass().cwiseProduct(at.v);
+    if (const Driving* driving = system().driving()) {
+      driving->force_rate({t, at.q}, f_rate_);
+      set_massless(b, f_rate_);
+    }
+    heavy.solve(b, x);
     set_massless(at.v, x);
   }
 
@@ -208,11 +218,11 @@ class Ida final : public Library {
   // their balance, (a M - K) x = +-rounding. If springs hardly hold a node at the start, this may
   // exceed the tolerance, and no step would be short enough. The tolerance shrinks as they come to
   // hold the node.
-  void tolerate_rounding() {
+  void tolerate_rounding(double t) {
     constexpr double roundings = 4 * machine_epsilon;
     const Vec q = Halves(y()).q;
     SymmetricMatrix k = system().stiffness_pattern();
-    stiffness(q, k);
+    stiffness({t, q}, k);
     EffectiveMass heavy(system());
     const bool is_known = !std::isnan(hold_masses(heavy, k));
     const Vec stiffness_of = row_sums(k);
@@ -248,7 +258,7 @@ class Ida final : public Library {
 
   // Gives v the entries of `values` that belong to massless nodes.
   template <class Values>
-  void set_massless(Eigen::Map<Vec> v, const Values& values) const {
+  void set_massless(MutableVec v, const Values& values) const {
     for (Index i = 0; i < system().size(); ++i) {
       if (system().mass()[i] == 0) v[i] = values[i];
     }
@@ -262,7 +272,7 @@ class Ida final : public Library {
       out.q = change.q - at.v;
       if (self.massless_) self.set_massless(out.q, -at.v);
       out.v = self.system().mass().cwiseProduct(change.v) - self.force_at(self.system(), t, at);
-      if (has_dissipated(y)) dissipated(residual) = dissipated(rate) - self.power();
+      if (has_work(y)) work(residual) = work(rate) - self.power().taken();
       return std::isfinite(out.v.sum());
     });
   }
@@ -315,6 +325,9 @@ class Ida final : public Library {
   Orders orders_;
   Vector rate_;                      // y'
   std::optional<Vector> tolerated_;  // absolute tolerance, with that of massless nodes
+  Vec f_rate_{system().size()};
+  // Of a system that depends on time, if it has massless nodes: at the time reached.
+  std::optional<FrozenInTime> frozen_;
   // The system with all unknowns held but the massless ones; empty without massless nodes.
   std::optional<ConstrainedSystem> massless_;
   bool is_consistent_ = true, has_finite_rate_ = true;
@@ -334,7 +347,7 @@ Method ida(const char* name, const char* solver, const char* stock_of = "") {
           .family = Family::sundials,
           .knob = Knob::rtol,
           .traits = {Trait::implicit, Trait::accepts_massless},
-          .needs = {Need::conservative, Need::stiffness, Need::autonomous},
+          .needs = {Need::conservative, Need::stiffness, Need::rate_in_time},
           .takes =
               SetOf<Option>{Option::max_order}.with(Option::solver, make_matrix == make_structured),
           .stock_of = stock_of,

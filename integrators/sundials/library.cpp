@@ -31,8 +31,8 @@ Library::Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_
   const bool is_given = options().atol > 0;
   absolute.q.setConstant(is_given ? options().atol : rtol() * options().length);
   absolute.v.setConstant(is_given ? options().atol : rtol() * options().speed);
-  // The energy that friction takes follows the motion, and decides no step.
-  if (has_dissipated(atol())) dissipated(atol()) = unlimited;
+  // Work follows the motion, and decides no step.
+  if (has_work(atol())) work(atol()) = unlimited;
   if (!make_matrix) return;
   k_ = implicit_part.stiffness_pattern();
   if (implicit_part.damping()) c_ = k_;
@@ -46,7 +46,7 @@ void Library::load(const State& state) {
   Halves halves(y());
   halves.q = state.q;
   halves.v = state.v;
-  if (has_dissipated(y())) dissipated(y()) = state.dissipated;
+  if (has_work(y())) work(y()) = state.work.taken();
   if (has_matrix()) matrix().begin_run();
 }
 
@@ -86,7 +86,7 @@ bool Library::set_rate(const System& part, double t, N_Vector y, N_Vector rate) 
   Halves change(rate);
   change.q = at.v;
   change.v = per_mass_.cwiseProduct(force_at(part, t, at));
-  if (has_dissipated(rate)) dissipated(rate) = power();
+  if (has_work(rate)) work(rate) = power().taken();
   return std::isfinite(change.v.sum());
 }
 
@@ -123,6 +123,24 @@ Outcome Library::step(const State& x, double h, State& next) {
   return take(x, next.t, next);
 }
 
+// The balance is by the library's own quadrature. What driving gave in the step is told apart by
+// Simpson's rule, on the cubic through both ends.
+void Library::set_work(const State& from, State& next) {
+  const double taken = work(y());
+  if (!is_driven()) {
+    next.work.dissipated = taken;
+  } else if (is_damped()) {
+    const double h = next.t - from.t;
+    const Vec q = (from.q + next.q) / 2 + h / 8 * (from.v - next.v);
+    const Vec v = 1.5 / h * (next.q - from.q) - (from.v + next.v) / 4;
+    const auto rate = [&](const At& at) { return system().driving()->driving_power(at).driven; };
+    next.work.driven += h / 6 * (rate(from) + 4 * rate({from.t + h / 2, q, v}) + rate(next));
+    next.work.dissipated = next.work.driven + taken;
+  } else {
+    next.work.driven = next.work.dissipated - taken;
+  }
+}
+
 Outcome Library::take(const State& from, double t_stop, State& next) {
   t_stop_ = t_stop;
   is_finite_ = true;
@@ -134,8 +152,9 @@ Outcome Library::take(const State& from, double t_stop, State& next) {
   const Halves halves(y());
   next.q = halves.q;
   next.v = halves.v;
-  next.dissipated = has_dissipated(y()) ? dissipated(y()) : from.dissipated;
   next.t = t;
+  next.work = from.work;
+  if (has_work(y())) set_work(from, next);
   return Outcome::reached_end;
 }
 

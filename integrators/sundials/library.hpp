@@ -118,6 +118,8 @@ class Library : public Formula {
   Outcome failure(Cause cause, const std::string& flag, double t);
 
  private:
+  // Sets the work of `next` by y.
+  void set_work(const State& from, State& next);
   static void keep_words(const char* words, void* self) noexcept;
   // The cause that the flag names, with two corrections. If forces are not finite, a library may
   // blame convergence or its small steps, and a later force instead of the first. If it says that

@@ -75,7 +75,7 @@ class Structured final : public NewtonMatrix {
       ab.v = (a_ - rs.q) / gamma_;
     }
     ab.q = a_;
-    if (has_dissipated(x)) dissipated(x) = (is_implicit_ ? gamma_ : 1) * dissipated(right);
+    if (has_work(x)) work(x) = (is_implicit_ ? gamma_ : 1) * work(right);
     return 0;
   }
 

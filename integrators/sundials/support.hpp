@@ -47,8 +47,8 @@ using Matrix = std::unique_ptr<_generic_SUNMatrix, FreeBy<SUNMatDestroy>>;
 using LinearSolver = std::unique_ptr<_generic_SUNLinearSolver, FreeBy<SUNLinSolFree>>;
 using NonlinearSolver = std::unique_ptr<_generic_SUNNonlinearSolver, FreeBy<SUNNonlinSolFree>>;
 
-// The two halves of a stacked vector y = (q, v) of length 2n. If the system has Damping, y has one
-// more entry, the energy W [J] that friction has taken, W' = v'Cv.
+// The two halves of a stacked vector y = (q, v) of length 2n. If the system has Damping or Driving,
+// y has one more entry, the energy W [J] that friction has taken less what driving has given.
 struct Halves {
   explicit Halves(N_Vector y)
       : n(N_VGetLength(y) / 2), q(N_VGetArrayPointer(y), n), v(N_VGetArrayPointer(y) + n, n) {}
@@ -57,12 +57,12 @@ struct Halves {
 };
 
 // The entry W of such a vector, and whether it has one.
-inline bool has_dissipated(N_Vector y) { return N_VGetLength(y) % 2 == 1; }
-inline double& dissipated(N_Vector y) { return N_VGetArrayPointer(y)[N_VGetLength(y) - 1]; }
+inline bool has_work(N_Vector y) { return N_VGetLength(y) % 2 == 1; }
+inline double& work(N_Vector y) { return N_VGetArrayPointer(y)[N_VGetLength(y) - 1]; }
 
 // The length of y for the system.
 inline Index stacked_size(const System& system) {
-  return 2 * system.size() + (system.damping() ? 1 : 0);
+  return 2 * system.size() + (system.damping() || system.driving() ? 1 : 0);
 }
 
 // A zero vector of that length for y: SUNDIALS' own serial one.

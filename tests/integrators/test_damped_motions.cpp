@@ -94,7 +94,7 @@ Orders observed_orders(const Method& method, const DampedMotion& motion) {
     h.push_back(-std::log(std::round(steps)));
     q.push_back(std::log(error_q));
     v.push_back(std::log(error_v));
-    dissipated.push_back(std::log(std::abs(r.state.dissipated - motion.end.dissipated)));
+    dissipated.push_back(std::log(std::abs(r.state.work.dissipated - motion.end.work.dissipated)));
   }
   BOOST_TEST_REQUIRE(q.size() >= 5u);
   const auto tail = [](const std::vector<double>& x) {
@@ -154,7 +154,7 @@ BOOST_DATA_TEST_CASE(methods_that_choose_steps_are_within_their_tolerance, of_ch
       const double error = distance(r.state, motion.end);
       BOOST_TEST(error < most);
       // Friction takes some 4 J, at rates of up to 20 W.
-      BOOST_TEST(std::abs(r.state.dissipated - motion.end.dissipated) < 10 * most);
+      BOOST_TEST(std::abs(r.state.work.dissipated - motion.end.work.dissipated) < 10 * most);
       BOOST_TEST(error < last);
       last = error;
     }
@@ -203,7 +203,7 @@ BOOST_DATA_TEST_CASE(dashpots_keep_momentum_and_angular_momentum, turning(), met
   const auto start = momenta(p.initial);
   // A hundred steps of a dozen roundings each, of momenta of some kg m/s.
   BOOST_TEST((momenta(r.state) - start).norm() < 1e-12 * (1 + start.norm()));
-  BOOST_TEST(r.state.dissipated > 0.1);
+  BOOST_TEST(r.state.work.dissipated > 0.1);
 }
 
 BOOST_AUTO_TEST_CASE(discrete_gradient_keeps_the_balance_at_any_step) {
@@ -214,9 +214,9 @@ BOOST_AUTO_TEST_CASE(discrete_gradient_keeps_the_balance_at_any_step) {
                       {.step_size = h, .solve_tolerance = 1e-14});
     BOOST_TEST_REQUIRE(r.summary.message == "");
     const double balance =
-        total_energy(*system, r.state) + r.state.dissipated - total_energy(*system, p.initial);
+        total_energy(*system, r.state) + r.state.work.dissipated - total_energy(*system, p.initial);
     BOOST_TEST(std::abs(balance) < 1e-12 * total_energy(*system, p.initial), balance);
-    BOOST_TEST(r.state.dissipated > 0.1);
+    BOOST_TEST(r.state.work.dissipated > 0.1);
   }
 }
 
@@ -240,9 +240,9 @@ BOOST_AUTO_TEST_CASE(the_balance_of_verlet_is_bounded_and_falls_with_the_square_
     BOOST_TEST(r.summary.energy_growth < 1.001);
     for (const State& state : film.seen) {
       worst[halving] = std::max(worst[halving],
-                                std::abs(total_energy(*system, state) + state.dissipated - start));
+                                std::abs(total_energy(*system, state) + state.work.dissipated - start));
     }
-    BOOST_TEST(r.state.dissipated > 0.5 * start);
+    BOOST_TEST(r.state.work.dissipated > 0.5 * start);
   }
   // (h w)^2/8 of the energy at 500 steps a period: 2e-5.
   BOOST_TEST(worst[0] < 1e-4 * start);

@@ -122,10 +122,10 @@ BOOST_AUTO_TEST_CASE(the_reference_of_a_damped_scene_is_kept_too) {
   const std::string scene = folder / "damped.toml";
   std::ofstream(scene) << "damping_time = 1e-3\n[generator]\nkind = \"chain\"\nnodes = 4\n";
   const Reference made = kept(scene.c_str(), until, folder);
-  BOOST_TEST(made.end.dissipated > 0);
+  BOOST_TEST(made.end.work.dissipated > 0);
   const Reference again = kept(scene.c_str(), until, folder);
   BOOST_TEST(again.seconds == made.seconds);
-  BOOST_TEST(again.end.dissipated == made.end.dissipated);
+  BOOST_TEST(again.end.work.dissipated == made.end.work.dissipated);
 }
 
 BOOST_AUTO_TEST_CASE(a_file_that_is_not_as_it_was_written_is_not_believed) {

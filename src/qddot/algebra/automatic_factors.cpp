@@ -19,11 +19,11 @@ constexpr double fewest_iterations = 300;
 // they cost half as much when last used, which may be long ago.
 constexpr double share_to_return = 0.5;
 
-struct Work {
+struct FactorWork {
   double factorization = 0, iteration = 0;  // operations
   double entries = 0;                       // of L
 
-  Work(const SymbolicFactorization& symbolic, const SymmetricMatrix& pattern)
+  FactorWork(const SymbolicFactorization& symbolic, const SymmetricMatrix& pattern)
       : factorization(symbolic.operations()),
         iteration(per_matrix_entry * static_cast<double>(pattern.nonZeros())),
         entries(symbolic.entries()) {}
@@ -36,7 +36,7 @@ double memory() {
 class AutomaticFactors final : public Factors {
  public:
   AutomaticFactors(const SymmetricMatrix& pattern, Vec diagonal, SymbolicFactorization symbolic,
-                   const Work& work)
+                   const FactorWork& work)
       : pattern_(pattern),
         diagonal_(std::move(diagonal)),
         symbolic_(std::move(symbolic)),
@@ -123,7 +123,7 @@ class AutomaticFactors final : public Factors {
   const SymmetricMatrix pattern_;
   const Vec diagonal_;
   SymbolicFactorization symbolic_;  // until direct_ is made from it
-  const Work work_;
+  const FactorWork work_;
   const bool fits_;  // whether L fits into memory
   std::unique_ptr<IterativeFactors> iterative_;
   std::unique_ptr<Factors> direct_;  // empty until it is needed
@@ -141,7 +141,7 @@ class AutomaticFactors final : public Factors {
 
 std::unique_ptr<Factors> make_automatic_factors(const SymmetricMatrix& pattern, Vec diagonal) {
   SymbolicFactorization symbolic = analyse(pattern);
-  const Work work(symbolic, pattern);
+  const FactorWork work(symbolic, pattern);
   if (work.factorization < fewest_iterations * work.iteration)
     return make_multifrontal(pattern, std::move(diagonal), std::move(symbolic));
   return std::make_unique<AutomaticFactors>(pattern, std::move(diagonal), std::move(symbolic),

@@ -12,7 +12,7 @@ ExponentialMotion::ExponentialMotion(const System& system, double duration)
     : system_(system), duration_(duration) {
   const Damping* damping = system.damping();
   if (!system.has_stiffness() || !system.stiffness_is_constant() || system.has_massless() ||
-      !damping || !damping->damping_is_constant()) {
+      !damping || !damping->damping_is_constant() || !system.is_autonomous()) {
     throw std::invalid_argument("the exact motion needs constant K and C and positive masses");
   }
   const Index n = system.size();

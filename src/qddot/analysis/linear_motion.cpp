@@ -24,7 +24,9 @@ double cosine(bool grows, double x) { return grows ? std::cosh(x) : std::cos(x);
 
 bool LinearMotion::has_modes(const System& system) {
   const Damping* damping = system.damping();
-  return damping ? damping->damping_time().has_value() : system.is_conservative();
+  const bool is_known =
+      system.is_autonomous() || (system.driving() && system.driving()->forcing(0));
+  return is_known && (damping ? damping->damping_time().has_value() : system.is_conservative());
 }
 
 LinearMotion::LinearMotion(const System& system)
@@ -33,7 +35,9 @@ LinearMotion::LinearMotion(const System& system)
     throw std::invalid_argument("the exact motion needs a constant K and positive masses");
   }
   if (!has_modes(system)) {
-    throw std::invalid_argument("modes stay apart only if C = alpha M - beta K");
+    throw std::invalid_argument(
+        "modes stay apart only if C = alpha M - beta K, and forces of time are sums of harmonics "
+        "and piecewise polynomials");
   }
   if (system.size() == 0) return;
   SymmetricMatrix k = system.stiffness_pattern();
@@ -59,7 +63,7 @@ State LinearMotion::after(const State& from, double duration) const {
 
 void LinearMotion::propagate(const State& from, double duration, State& to,
                              Scratch& scratch) const {
-  auto& [f, velocity, push, y, rate] = scratch;
+  auto& [f, velocity, push, y, rate, forced] = scratch;
   const double t = duration;
   f.resize(from.q.size());
   y.resize(squares_.size());
@@ -79,6 +83,14 @@ void LinearMotion::propagate(const State& from, double duration, State& to,
     const double wt = std::sqrt(std::abs(squares_[j])) * t, half = sinc(grows, wt / 2);
     y[j] = velocity[j] * t * sinc(grows, wt) + push[j] * 0.5 * t * t * half * half;
     rate[j] = velocity[j] * cosine(grows, wt) + push[j] * t * sinc(grows, wt);
+  }
+  if (const Driving* driving = system_.driving()) {
+    const Forcing forcing = *driving->forcing(from.t);
+    if (!forced || !forced->is_for(forcing, t)) forced.emplace(squares_, gamma_, forcing, t);
+    const auto project = [&](const Vec& force) -> Vec {
+      return u_.transpose() * force.cwiseQuotient(root_mass_);
+    };
+    forced->add(forcing, from.t, project, y, rate);
   }
   to.t = from.t + t;
   to.q.noalias() = u_ * y;

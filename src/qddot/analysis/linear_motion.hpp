@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "qddot/analysis/forced_modes.hpp"
 #include "qddot/model/system.hpp"
 
 namespace qddot {
@@ -13,17 +16,19 @@ namespace qddot {
 //   y(t) = y'(0) sinh(st)/s + b (cosh st - 1)/s^2.
 // Modes stay apart with C = alpha M - beta K, as of air and of dashpots in proportion to stiffness.
 // Each is then damped by gamma = (alpha + beta w^2)/2 (see damped_mode.hpp).
+// Forces of time push modes beside (see forced_modes.hpp), from corner to corner.
 // There is no step and no step error, only the rounding of the dense eigenproblem. That takes
 // O(n^3) time once and n^2 memory; a motion is O(n^2). The system must outlive it.
 class LinearMotion {
  public:
   // Throws std::invalid_argument unless K is constant and every mass is positive. So it does if the
-  // system has another Damping.
+  // system has another Damping, or its forces are other functions of time than Forcing.
   explicit LinearMotion(const System& system);
 
   // The workspace of a motion.
   struct Scratch {
     Vec f, velocity, push, y, rate;
+    std::optional<ForcedModes> forced{};
   };
 
   // The state `duration` [s] after `from`.
@@ -31,7 +36,8 @@ class LinearMotion {
   // The same into `to`, another state; allocates nothing if both have been used before.
   void propagate(const State& from, double duration, State& to, Scratch& scratch) const;
 
-  // Whether modes stay apart: there is no damping, or one of that kind.
+  // Whether modes stay apart: there is no damping, or one of that kind, and forces of time are
+  // known.
   static bool has_modes(const System& system);
 
  private:

@@ -20,6 +20,7 @@ class CountedSystem {
         split_stiffness_(system.split_stiffness()),
         discrete_gradient_(system.discrete_gradient()),
         damping_(system.damping()),
+        driving_(system.driving()),
         clock_(is_timed ? &seconds : nullptr) {}
   CountedSystem(const CountedSystem&) = delete;
   CountedSystem& operator=(const CountedSystem&) = delete;
@@ -31,6 +32,7 @@ class CountedSystem {
   void force(const System& part, const At& at, MutableVec f) {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
+    if (driving_) driven_ = books(part) ? driving_->driving_power(at) : Work{};
     if (!damping_ || at.v.size() == 0) return part.force(at, f);
     friction_.resize(f.size());
     const Damping* damping = part.damping();
@@ -47,17 +49,20 @@ class CountedSystem {
       power_ = 0;
     }
   }
-  // f_d [N] of the last force at velocities v, and the power v'Cv [W] that it took, of force()
-  // alone; zero if the system has no Damping.
+  // f_d [N] of the last force at velocities v; zero if the system has no Damping.
   const Vec& friction() const { return friction_; }
   // The same; this may change it for a vector of any content, in place of a copy.
   Vec& friction() { return friction_; }
-  double power() const { return power_; }
-  // v'Cv [W] of a system with Damping; friction() is then that of this place.
-  double power(const At& at) {
+  // The power [W] of friction and driving at the place of the last force, of force() alone.
+  Work power() const { return Work{.dissipated = power_} + driven_; }
+  // That of driving alone, of any force. Friction then has -v'f_d beside.
+  const Work& driving_power() const { return driven_; }
+  // The same as power(), at any place; friction() is then that of this place.
+  Work power(const At& at) {
     const Stopwatch watch(clock_, &Seconds::force);
-    set_friction(*damping_, at);
-    return power_;
+    if (damping_) set_friction(*damping_, at);
+    if (driving_) driven_ = driving_->driving_power(at);
+    return power();
   }
   // Subtracts rate C [N/m] of a part with Damping from `k`, a K of its pattern; rate in 1/s.
   void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {
@@ -72,12 +77,15 @@ class CountedSystem {
     const bool is_damped = damping_ && at.v.size() > 0;
     if (!clock_ && !is_damped) {
       ++counts.force_evaluations;
-      return system_.force_beside(at, f, beside);
+      const double sum = system_.force_beside(at, f, beside);
+      if (driving_) driven_ = driving_->driving_power(at);
+      return sum;
     }
     if (!clock_) {
       friction_.resize(f.size());
       if (const auto sum = damping_->damped_force(at, f, friction_, &beside)) {
         ++counts.force_evaluations;
+        if (driving_) driven_ = driving_->driving_power(at);
         return *sum;
       }
     }
@@ -85,6 +93,8 @@ class CountedSystem {
     force(at, f);
     return beside.after(0, system_.size());
   }
+  // Driving of the system, nullptr if it has none.
+  const Driving* driving() const { return driving_; }
   // DiscreteGradient::mean_force, counted as a force; for methods that need it.
   void mean_force(const At& a, const At& b, MutableVec f) {
     ++counts.force_evaluations;
@@ -122,6 +132,10 @@ class CountedSystem {
   Seconds seconds;
 
  private:
+  // Whether the force of the part books what driving gives: that of the whole, or the soft half.
+  bool books(const System& part) const {
+    return &part == &system_ || (system_.split() && &part == system_.split()->soft.get());
+  }
   void set_friction(const Damping& damping, const At& at) {
     friction_.resize(at.q.size());
     damping.friction(at, friction_);
@@ -133,9 +147,11 @@ class CountedSystem {
   const SplitStiffness* split_stiffness_;
   const DiscreteGradient* discrete_gradient_;
   const Damping* damping_;
+  const Driving* driving_;
   Seconds* clock_;
   Vec friction_;
   double power_ = 0;
+  Work driven_{};  // rates
   SymmetricMatrix c_;
 };
 

@@ -23,15 +23,16 @@ constexpr double shortest_way = 1e-18, longest_way = 1;
 
 // The lowest V on the path q + s M^-1 f, along which a motion from rest at q begins. V falls there
 // at first. Each s is twice the last one. `ahead` and `way` are scratch.
-double lowest_ahead(const System& system, const Vec& q, Vec& ahead, Vec& way) {
-  system.force(q, way);
+double lowest_ahead(const System& system, const At& start, Vec& ahead, Vec& way) {
+  const auto& [t, q, v] = start;
+  system.force({t, q}, way);
   for (Index i = 0; i < way.size(); ++i) {
     way[i] = system.mass()[i] > 0 ? way[i] / system.mass()[i] : 0;
   }
-  double lowest = system.potential(q);
+  double lowest = system.potential({t, q});
   for (double s = shortest_way; s < longest_way; s *= 2) {
     ahead = q + s * way;
-    const double potential = system.potential(ahead);
+    const double potential = system.potential({t, ahead});
     if (potential < lowest) lowest = potential;
   }
   return lowest;
@@ -48,10 +49,12 @@ void EnergyGrowth::start(const State& state) {
   if (!is_conserved_) return;
   q_ = state.q;
   const double kinetic = system_.kinetic(state.v);
-  fastest_ = {kinetic, state.dissipated, state.q, state.v};
-  farthest_ = {0, state.dissipated, state.q, state.v};
-  lowest_ = system_.potential(state.q);
-  start_ = most_ = kinetic + lowest_ + state.dissipated;
+  t_ = state.t;
+  fastest_ = {kinetic, state};
+  farthest_ = {0, state};
+  lowest_ = system_.potential({state.t, state.q});
+  start_ = most_ = kinetic + lowest_ + state.work.taken();
+  driven_ = 0;
 }
 
 void EnergyGrowth::look_sooner(double squared_speed) {
@@ -79,21 +82,20 @@ void EnergyGrowth::look(const State& state, double work) {
   propose(fastest_, system_.kinetic(state.v), state);
   propose(farthest_, (state.q - q_).squaredNorm(), state);
   if (!is_dear && work < next_energy_) return;
-  see(state.q, state.v, state.dissipated);
+  see(state);
   next_energy_ = work + drawn() * work_an_energy;
 }
 
 void EnergyGrowth::propose(Candidate& candidate, double size, const State& state) {
   if (!(size > grown * candidate.size)) return;
   candidate.size = size;
-  candidate.dissipated = state.dissipated;
-  candidate.q = state.q;
-  candidate.v = state.v;
+  candidate.state = state;
 }
 
-double EnergyGrowth::see(const Vec& q, const Vec& v, double dissipated) {
-  const double potential = system_.potential(q);
-  const double energy = system_.kinetic(v) + potential + dissipated;
+double EnergyGrowth::see(const State& state) {
+  const double potential = system_.potential({state.t, state.q});
+  const double energy = system_.kinetic(state.v) + potential + state.work.taken();
+  driven_ = std::max(driven_, std::abs(state.work.driven));
   most_ = std::max(most_, std::isfinite(energy) ? energy : largest);
   lowest_ = std::min(lowest_, potential);
   return energy;
@@ -101,31 +103,31 @@ double EnergyGrowth::see(const Vec& q, const Vec& v, double dissipated) {
 
 // The change of V by one rounding of the positions at the start.
 double EnergyGrowth::rounding() {
-  const double potential = system_.potential(q_);
+  const double potential = system_.potential({t_, q_});
   double most = machine_epsilon * std::abs(potential);
   for (const int period : {1, 2, 3}) {
-    Vec& near = fastest_.q;  // scratch from here on
+    Vec& near = fastest_.state.q;  // scratch from here on
     near = q_;
     for (Index i = 0; i < q_.size(); ++i) {
       near[i] *= 1 + (i % period == 0 ? 4 : -4) * machine_epsilon;
     }
-    most = std::max(most, std::abs(system_.potential(near) - potential));
+    most = std::max(most, std::abs(system_.potential({t_, near}) - potential));
   }
   return 4 * most;
 }
 
 EnergyChange EnergyGrowth::change(const State& state) {
   if (!is_conserved_) return {};
-  see(fastest_.q, fastest_.v, fastest_.dissipated);
-  see(farthest_.q, farthest_.v, farthest_.dissipated);
-  const double lost = start_ - see(state.q, state.v, state.dissipated), gained = most_ - start_;
-  EnergyChange change{.lost = std::max(0.0, lost), .own = start_ - lowest_};
+  see(fastest_.state);
+  see(farthest_.state);
+  const double lost = start_ - see(state), gained = most_ - start_;
+  EnergyChange change{.lost = std::max(0.0, lost), .own = start_ - lowest_ + driven_};
   const bool is_own = gained <= change.own;
   if (is_own && change.own > 0) change.growth += gained / change.own;
   if (is_own && !(lost > large_loss * change.own)) return change;
   // A run that grew from its first step on has no other energy of its own.
   if (!is_own) {
-    const double ahead = lowest_ahead(system_, q_, fastest_.q, fastest_.v);
+    const double ahead = lowest_ahead(system_, {t_, q_}, fastest_.state.q, fastest_.state.v);
     change.own = std::max(change.own, start_ - ahead);
   }
   const double unsure = rounding(), many = unsure + 4 * machine_epsilon * std::abs(most_);

@@ -9,8 +9,8 @@ namespace qddot {
 // The energy that a run gained on its way and lost by its end, beside the energy that its motion
 // can turn into speed, D = the largest E(0) - V(q) seen. An exact motion has the first values of
 // all, also if it begins at rest and falls. So has a system without V, or one that changes its
-// energy. What damping has taken (State::dissipated) counts as energy: only the method's own gain
-// or loss is left.
+// energy. What damping has taken and driving has given (State::work) counts: only the method's own
+// gain or loss is left, and D has all that driving has given or taken.
 struct EnergyChange {
   double growth = 1;  // 1 + (E_max - E(0)) / D, a lower bound
   double lost = 0;    // E(0) - E at the end [J], unless rounding may have made it
@@ -37,8 +37,7 @@ class EnergyGrowth {
   // Borrows the system, which must outlive it.
   explicit EnergyGrowth(const System& system)
       : system_(system),
-        is_conserved_(system.has_potential() && system.is_autonomous() &&
-                      (system.is_conservative() || system.damping())) {}
+        is_conserved_(system.has_potential() && keeps_balance(system)) {}
 
   // Begins a new run at `state`.
   void start(const State& state);
@@ -57,12 +56,12 @@ class EnergyGrowth {
 
  private:
   struct Candidate {  // a state whose E is not yet computed, and what is large there
-    double size = 0, dissipated = 0;
-    Vec q, v;
+    double size = 0;
+    State state;
   };
   void look_sooner(double squared_speed);
   void propose(Candidate& candidate, double size, const State& state);
-  double see(const Vec& q, const Vec& v, double dissipated);  // returns E
+  double see(const State& state);  // returns E
   double rounding();
   double drawn();
 
@@ -74,8 +73,10 @@ class EnergyGrowth {
   std::uint32_t random_ = 1;
   double start_ = 0;              // E(0)
   double most_ = 0, lowest_ = 0;  // E and V so far
+  double driven_ = 0;             // the most that driving gave or took [J]
   Candidate fastest_, farthest_;
-  Vec q_;  // at the start
+  double t_ = 0;  // at the start
+  Vec q_;
 };
 
 }  // namespace qddot

@@ -100,7 +100,7 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
     summary.energy_growth = energy.growth;
     summary.energy_lost = energy.lost;
     summary.energy_loss = energy.loss();
-    summary.dissipated = state.dissipated - dissipated_;
+    summary.work = state.work - work_;
   }
   if (outcome == Outcome::reached_end) return summary;
   const bool says_part = message_.empty() && has_begun_ && is_whole();
@@ -142,11 +142,13 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
     if (outcome == Outcome::reached_end) state.t = t;
     return outcome;
   };
+  const std::vector<double> corners =
+      moves ? corners_between(state.t, t_end) : std::vector<double>();
   if (moves) {
     has_begun_ = true;
-    dissipated_ = state.dissipated;
+    work_ = state.work;
     for (Part& part : parts_) {
-      part.run->clear(t_end, stop, is_whole() ? observer.step : nullptr);
+      part.run->clear(corners.empty() ? t_end : corners.front(), stop, is_whole() ? observer.step : nullptr);
       part.growth = 1;
     }
     for (Part& part : parts_) {
@@ -157,11 +159,37 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
       part.run->begin(is_whole() ? state : part.state);
     }
   }
+  // Steps end on corners, where the method begins anew.
+  auto corner = corners.begin();
+  const auto go_by_corners = [&](double t) {
+    for (; corner != corners.end() && *corner <= t; ++corner) {
+      if (const Outcome outcome = go_to(*corner); outcome != Outcome::reached_end) return outcome;
+      const auto next = corner + 1;
+      for (Part& part : parts_) {
+        part.run->begin_anew(is_whole() ? state : part.state,
+                             next == corners.end() ? t_end : *next);
+      }
+    }
+    return go_to(t);
+  };
   for (const double t : observer.times) {
-    if (const Outcome outcome = go_to(t); outcome != Outcome::reached_end) return outcome;
+    if (const Outcome outcome = go_by_corners(t); outcome != Outcome::reached_end) return outcome;
     observer.see(state);
   }
-  return go_to(t_end);
+  return go_by_corners(t_end);
+}
+
+// A jump in the derivative k of f changes a step across it by h^(k+1) and less.
+std::vector<double> Integrator::corners_between(double t, double t_end) const {
+  std::vector<double> times;
+  const Driving* driving = system_.driving();
+  if (!driving) return times;
+  for (const Corner& corner : driving->corners()) {
+    const bool counts = method_.order == 0 || method_.order > corner.order + 1;
+    const bool is_new = times.empty() || corner.t > times.back();
+    if (counts && is_new && corner.t > t && corner.t < t_end) times.push_back(corner.t);
+  }
+  return times;
 }
 
 Outcome Integrator::run_to(State& state, double t_stop) {
@@ -229,12 +257,12 @@ EnergyChange Integrator::energy_change(const State& state) {
 }
 
 void Integrator::gather(State& state) const {
-  state.dissipated = dissipated_;
+  state.work = work_;
   for (const Part& part : parts_) {
     const Index n = part.state.q.size();
     state.q.segment(part.first, n) = part.state.q;
     state.v.segment(part.first, n) = part.state.v;
-    state.dissipated += part.state.dissipated;
+    state.work += part.state.work;
   }
   state.t = parts_.front().state.t;
 }

@@ -25,8 +25,8 @@ struct Summary {
   // The energy [J] that was lost by the end of the run, and that part of the energy which its
   // motion can turn into speed (EnergyChange); zero if none was lost.
   double energy_lost = 0, energy_loss = 0;
-  // The energy [J] that damping took in the run; that is no loss of the method.
-  double dissipated = 0;
+  // What damping took and driving gave in the run [J]; that is no loss or gain of the method.
+  Work work{};
 };
 
 // Observes a run: `see` is called at each of `times` [s] (ascending, after the start, at most
@@ -82,6 +82,8 @@ class Integrator {
   void add_parts(const System& system, Index first, const Options& options);
   bool is_whole() const { return parts_.size() == 1; }
   Outcome run(State& state, double t_end, const Observer& observer, std::stop_token stop);
+  // The corners of forces in time, between these, that the method's order sees.
+  std::vector<double> corners_between(double t, double t_end) const;
   Outcome run_to(State& state, double t_stop);
   // Brings several parts to one time: t_stop, or that of the first failure.
   Outcome run_parts_to(State& state, double t_stop);
@@ -95,7 +97,7 @@ class Integrator {
   const System& system_;
   std::vector<Part> parts_;  // none if nothing can be run
   bool has_begun_ = false;
-  double dissipated_ = 0;  // by the start of the run [J]
+  Work work_{};  // by the start of the run [J]
   std::string message_;
   std::int64_t failed_step_ = 0;
 };

@@ -26,29 +26,30 @@ class MasslessBalance {
   MasslessBalance(const System& system, Vec start, double tolerance, double solve_tolerance);
 
   // Whether massless nodes are in a stable balance after the step from `from` to `to`, and followed
-  // the other nodes there. `force(q, f)` and `stiffness(q, k)` are the system's.
+  // the other nodes there. `force(at, f)` and `stiffness(at, k)` are the system's.
   template <class Force, class Stiffness>
   bool holds(const State& from, const State& to, const Force& force, const Stiffness& stiffness) {
-    const auto look = [&](Place& place, const Vec& q) {
-      place.q = q;
-      force(q, place.f);
-      stiffness(q, place.k);
+    const auto look = [&](Place& place, const State& state) {
+      const At at(state.t, state.q);
+      place.q = state.q;
+      force(at, place.f);
+      stiffness(at, place.k);
       place.is_stable = factorize(place);
     };
     if (to_->q == from.q) {
       std::swap(from_, to_);
     } else {
-      look(*from_, from.q);
+      look(*from_, from);
     }
-    look(*to_, to.q);
+    look(*to_, to);
     return to_->is_stable && have_followed(to.t - from.t);
   }
 
-  // Whether massless nodes at q (n), balanced or not, are held in every direction. For the end of a
+  // Whether massless nodes there, balanced or not, are held in every direction. For the end of a
   // run: forgets the last step.
   template <class Stiffness>
-  bool are_held_at(const Vec& q, const Stiffness& stiffness) {
-    stiffness(q, to_->k);
+  bool are_held_at(const At& at, const Stiffness& stiffness) {
+    stiffness(at, to_->k);
     return factorize(*to_);
   }
 

@@ -62,7 +62,10 @@ enum class Need {
   laplacian,           // Laplacian
   potential,           // V
   conservative,        // a force that does not depend on velocities
-  autonomous,          // a force, V and K that do not depend on time
+  autonomous,          // a force, V and K that do not depend on time,
+  rate_in_time,        // or Driving, for df/dt
+  balance_in_time,     // or Driving, for the change of V in time
+  known_in_time,       // or Driving, for forces that are sums of known functions of time
 };
 
 // A method as the registry knows it. Tables, tests and experiments use nothing else.
@@ -139,6 +142,14 @@ inline bool is_split(const System& system) {
   return std::ranges::all_of(blocks, [](const auto& block) { return is_split(*block); });
 }
 
+// Whether the forces are sums of known functions of time, in each block.
+inline bool is_known_in_time(const System& system) {
+  const auto blocks = system.blocks();
+  if (blocks.empty())
+    return system.is_autonomous() || (system.driving() && system.driving()->forcing(0));
+  return std::ranges::all_of(blocks, [](const auto& block) { return is_known_in_time(*block); });
+}
+
 // The reason why the method cannot run on the system, whatever its masses; nothing if it can.
 inline std::optional<Outcome> misfit(const Method& method, const System& system) {
   if (method.asks(Need::stiffness) && !system.has_stiffness()) return Outcome::no_stiffness;
@@ -158,7 +169,15 @@ inline std::optional<Outcome> misfit(const Method& method, const System& system)
       return Outcome::refuses_damping;
     }
   }
-  if (method.asks(Need::autonomous) && !system.is_autonomous()) return Outcome::not_autonomous;
+  if (!system.is_autonomous() && system.size() > 0) {
+    const bool needs_driving = method.asks(Need::rate_in_time) ||
+                               method.asks(Need::balance_in_time) ||
+                               method.asks(Need::known_in_time);
+    if (method.asks(Need::autonomous) || (needs_driving && !system.driving()))
+      return Outcome::not_autonomous;
+    if (method.asks(Need::known_in_time) && !is_known_in_time(system))
+      return Outcome::not_autonomous;
+  }
   return {};
 }
 // Whether the method can run on the system, whatever its masses.

@@ -60,6 +60,11 @@ void SystemRun::begin(const State& state) {
   stepper_->start(state);
 }
 
+void SystemRun::begin_anew(const State& state, double t_end) {
+  t_end_ = t_end;
+  stepper_->start(state);
+}
+
 Outcome SystemRun::run_to(State& state, double t_stop) {
   if (must_stop()) return Outcome::over_budget;
   try {
@@ -117,8 +122,8 @@ Outcome SystemRun::check_step(const State& from, const State& to, double squared
       return Outcome::went_slack;
     }
   }
-  const auto force_at = [&](const Vec& q, Vec& f) { system_.force(q, f); };
-  const auto stiffness_at = [&](const Vec& q, SymmetricMatrix& k) { system_.stiffness(q, k); };
+  const auto force_at = [&](const At& at, Vec& f) { system_.force(at, f); };
+  const auto stiffness_at = [&](const At& at, SymmetricMatrix& k) { system_.stiffness(at, k); };
   if (balance_ && !balance_->holds(from, to, force_at, stiffness_at)) {
     slack_at_ = to.t;
     return Outcome::went_slack;
@@ -126,9 +131,11 @@ Outcome SystemRun::check_step(const State& from, const State& to, double squared
   return Outcome::reached_end;
 }
 
-Outcome SystemRun::indefinite_at(const Vec& q) {
-  const auto stiffness_at = [&](const Vec& at, SymmetricMatrix& k) { system_.stiffness(at, k); };
-  if (!balance_ || balance_->are_held_at(q, stiffness_at)) return Outcome::indefinite_matrix;
+Outcome SystemRun::indefinite_at(const At& at) {
+  const auto stiffness_at = [&](const At& there, SymmetricMatrix& k) {
+    system_.stiffness(there, k);
+  };
+  if (!balance_ || balance_->are_held_at(at, stiffness_at)) return Outcome::indefinite_matrix;
   slack_at_ = reached();
   return Outcome::went_slack;
 }

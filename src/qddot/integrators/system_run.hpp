@@ -35,6 +35,8 @@ class SystemRun {
   void clear(double t_end, std::stop_token stop, std::function<void(const State&)> shown_steps);
   // Prepares everything before the first step from `state`.
   void begin(const State& state);
+  // Prepares steps from `state` up to t_end, which continue the run and know no earlier steps.
+  void begin_anew(const State& state, double t_end);
   // Brings `state` from its time to t_stop exactly. If it fails, `state` is the last accepted one,
   // or stays if no step followed it. Exceptions pass through, after the same.
   Outcome run_to(State& state, double t_stop);
@@ -65,9 +67,9 @@ class SystemRun {
   Outcome check_step(const State& from, const State& to);
   Outcome check_step(const State& from, const State& to, double squared_speed);
   bool checks_velocities() const { return validity_; }
-  // The outcome of a run that ends because its matrix at q (n) is not positive definite:
-  // went_slack if springs do not hold a massless node there, else indefinite_matrix.
-  Outcome indefinite_at(const Vec& q);
+  // The outcome of a run that ends because its matrix there is not positive definite: went_slack if
+  // springs do not hold a massless node there, else indefinite_matrix.
+  Outcome indefinite_at(const At& at);
   // The outcome of a solve as that of a run: reached_end, indefinite_matrix, or solver_failed with
   // a message.
   Outcome check_solve(SolveOutcome solution);

@@ -57,24 +57,24 @@ const SymmetricMatrix& BlockDiagonalSystem::stiffness_pattern() const {
   return pattern_;
 }
 
-bool BlockDiagonalSystem::bound_row_sums(const ConstVec& q, Vec& sums) const {
+bool BlockDiagonalSystem::bound_row_sums(const At& at, Vec& sums) const {
   sums.resize(size());
   bool all = true;
   Vec own_sums;
-  for_each(blocks_, VecView(q), [&](const System& block, const At& own, Index first) {
-    all = all && block.bound_row_sums(own.q, own_sums);
+  for_each(blocks_, at, [&](const System& block, const At& own, Index first) {
+    all = all && block.bound_row_sums(own, own_sums);
     if (all) sums.segment(first, block.size()) = own_sums;
   });
   return all;
 }
 
-bool BlockDiagonalSystem::multiply_stiffness(const ConstVec& q, const ConstVec& x,
+bool BlockDiagonalSystem::multiply_stiffness(const At& at, const ConstVec& x,
                                              MutableVec y) const {
   bool all = true;
   const VecView of = x;
-  for_each(blocks_, VecView(q), [&](const System& block, const At& own, Index first) {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index first) {
     const Index n = block.size();
-    all = all && block.multiply_stiffness(own.q, of.segment(first, n), y.segment(first, n));
+    all = all && block.multiply_stiffness(own, of.segment(first, n), y.segment(first, n));
   });
   return all;
 }
@@ -211,6 +211,49 @@ bool BlockDiagonalSystem::is_autonomous() const {
   return all_have(blocks_, &System::is_autonomous);
 }
 
+// It has Driving if that is all that makes forces of blocks depend on time.
+const Driving* BlockDiagonalSystem::driving() const {
+  const bool all = std::ranges::all_of(
+      blocks_, [](const auto& block) { return block->is_autonomous() || block->driving(); });
+  return all && any_has(blocks_, &System::driving) ? this : nullptr;
+}
+
+Work BlockDiagonalSystem::driving_power(const At& at) const {
+  Work power;
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
+    if (const Driving* driving = block.driving()) power += driving->driving_power(own);
+  });
+  return power;
+}
+
+double BlockDiagonalSystem::potential_change(double from, double to, const VecView& q) const {
+  double change = 0;
+  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+    if (const Driving* driving = block.driving())
+      change += driving->potential_change(from, to, own.q);
+  });
+  return change;
+}
+
+void BlockDiagonalSystem::force_rate(const At& at, MutableVec rate) const {
+  rate.setZero();
+  for_each(blocks_, at, [&](const System& block, const At& own, Index first) {
+    if (const Driving* driving = block.driving())
+      driving->force_rate(own, rate.segment(first, block.size()));
+  });
+}
+
+std::vector<Corner> BlockDiagonalSystem::corners() const {
+  std::vector<Corner> all;
+  for (const auto& block : blocks_) {
+    if (!block->driving()) continue;
+    const std::vector<Corner> own = block->driving()->corners();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  std::ranges::sort(all, {}, &Corner::t);
+  return all;
+}
+
 bool BlockDiagonalSystem::has_potential() const {
   return all_have(blocks_, &System::has_potential);
 }
@@ -283,20 +326,20 @@ bool BlockDiagonalSystem::stiffness_is_constant() const {
   return all_have(blocks_, &System::stiffness_is_constant);
 }
 
-bool BlockDiagonalSystem::is_linear_at(const ConstVec& q) const {
+bool BlockDiagonalSystem::is_linear_at(const At& at) const {
   bool is_linear = true;
-  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
     const auto* pieces = block.pieces();
-    is_linear = is_linear && (pieces ? pieces->is_linear_at(own.q) : block.stiffness_is_constant());
+    is_linear = is_linear && (pieces ? pieces->is_linear_at(own) : block.stiffness_is_constant());
   });
   return is_linear;
 }
 
-bool BlockDiagonalSystem::is_valid_at(const ConstVec& q) const {
+bool BlockDiagonalSystem::is_valid_at(const At& at) const {
   bool is_valid = true;
-  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
     const auto* validity = block.validity();
-    is_valid = is_valid && (!validity || validity->is_valid_at(own.q));
+    is_valid = is_valid && (!validity || validity->is_valid_at(own));
   });
   return is_valid;
 }
@@ -323,12 +366,12 @@ Index BlockDiagonalSystem::kink_count() const {
   return count;
 }
 
-void BlockDiagonalSystem::kink_lengths(const ConstVec& q, MutableVec lengths) const {
+void BlockDiagonalSystem::kink_lengths(const At& at, MutableVec lengths) const {
   Index next = 0;
-  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
     const auto* kinks = block.kinks();
     if (!kinks) return;
-    kinks->kink_lengths(own.q, lengths.segment(next, kinks->kink_count()));
+    kinks->kink_lengths(own, lengths.segment(next, kinks->kink_count()));
     next += kinks->kink_count();
   });
 }

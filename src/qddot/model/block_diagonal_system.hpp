@@ -27,8 +27,8 @@ class BlockDiagonalSystem final : public CapableSystem {
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override;
   bool has_stiffness() const override;
-  bool bound_row_sums(const ConstVec& q, Vec& sums) const override;
-  bool multiply_stiffness(const ConstVec& q, const ConstVec& x, MutableVec y) const override;
+  bool bound_row_sums(const At& at, Vec& sums) const override;
+  bool multiply_stiffness(const At& at, const ConstVec& x, MutableVec y) const override;
   Index stiffness_entries() const override;
   bool stiffness_is_constant() const override;
 
@@ -47,11 +47,11 @@ class BlockDiagonalSystem final : public CapableSystem {
   void mean_force(const At& a, const At& b, MutableVec f) const override;
   void assemble_laplacian(SymmetricMatrix& l) const override;
   bool bounds_stiffness() const override;
-  bool is_linear_at(const ConstVec& q) const override;
-  bool is_valid_at(const ConstVec& q) const override;
+  bool is_linear_at(const At& at) const override;
+  bool is_valid_at(const At& at) const override;
   std::optional<double> end_of_validity(const State& from, const State& to) const override;
   Index kink_count() const override;
-  void kink_lengths(const ConstVec& q, MutableVec lengths) const override;
+  void kink_lengths(const At& at, MutableVec lengths) const override;
   void friction(const At& at, MutableVec f) const override;
   std::optional<double> secant_friction(const BackwardRate& rate, const ConstVec& v,
                                         MutableVec f) const override;
@@ -60,6 +60,11 @@ class BlockDiagonalSystem final : public CapableSystem {
   double air_damping() const override;
   bool has_dashpots() const override;
   std::optional<double> damping_time() const override;
+  const Driving* driving() const override;
+  Work driving_power(const At& at) const override;
+  double potential_change(double from, double to, const VecView& q) const override;
+  void force_rate(const At& at, MutableVec rate) const override;
+  std::vector<Corner> corners() const override;
 
  private:
   // The blocks' columns follow one another in `k`, and so do their entries: evaluate(block, its

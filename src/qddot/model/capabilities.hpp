@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "qddot/model/system.hpp"
+#include "qddot/model/time_curve.hpp"
 
 // Capabilities: what a System may offer beside V, f and K. Each is an interface. A system class
 // derives from System and from the interfaces that it implements, and overrides System's accessor
@@ -58,7 +59,7 @@ class PiecewiseLinear {
   virtual ~PiecewiseLinear() = default;
   // Whether q (n) lies in that region: f(b) = f(a) + K (b - a) for any a and b in it and for all
   // points between them. q need not lie on a motion.
-  virtual bool is_linear_at(const ConstVec& q) const = 0;
+  virtual bool is_linear_at(const At& at) const = 0;
 };
 
 // The positions at which a system has the forces of the scene that it was made from; elsewhere its
@@ -67,7 +68,7 @@ class Validity {
  public:
   virtual ~Validity() = default;
   // Whether the system is valid at q (n).
-  virtual bool is_valid_at(const ConstVec& q) const = 0;
+  virtual bool is_valid_at(const At& at) const = 0;
   // The time [s] at which the system stops being valid in the step between two states; nothing if
   // it stays valid. Integrators ask after each step and accept only steps that stay valid.
   virtual std::optional<double> end_of_validity(const State&, const State& to) const {
@@ -85,14 +86,16 @@ class Kinks {
   virtual Index kink_count() const = 0;
   // Writes these signed lengths [m] at q (n) into `lengths`, sized by the caller. They are affine
   // in q.
-  virtual void kink_lengths(const ConstVec& q, MutableVec lengths) const = 0;
+  virtual void kink_lengths(const At& at, MutableVec lengths) const = 0;
 };
 
 // A rate of change by a formula over some instants: x' = a0 x0 + a1 x1 + a2 x2, with a0 + a1 + a2 =
-// 0 [1/s], of anything that depends on the positions q0 (n) and those at earlier instants.
+// 0 [1/s], of anything that depends on the positions q0 (n) and those at earlier instants, and on
+// their times t [s] if the system is not autonomous.
 struct BackwardRate {
   ConstVec q0, q1, q2;
   double a0, a1, a2;
+  double t0 = 0, t1 = 0, t2 = 0;
 };
 
 // Damping that is linear in the velocities: f(q, v) = -dV/dq - C(q) v. Rayleigh's dissipation
@@ -135,6 +138,40 @@ class Damping {
   virtual std::optional<double> damping_time() const { return {}; }
 };
 
+// The forces of a linear system as functions of time, f(q, s) - K q + C v: harmonics
+// a sin(w s + phi), and a polynomial from the time t on, sum_k derivatives_k (s - t)^k/k!.
+struct Forcing {
+  struct Harmonic {
+    double frequency, phase;  // w [rad/s], phi [rad]
+    Vec amplitude;            // [N], n
+  };
+  std::vector<Harmonic> harmonics{};
+  std::vector<Vec> derivatives{};  // [N/s^k], n each
+};
+
+// Supports that move and loads that change: V depends on t, and f = -dV/dq at each time. The energy
+// changes at the rate dV/dt at constant q,
+//   d/dt (T + V) = dV/dt - v'Cv,
+// as Noether's theorem has it. A support that moves against dashpots also does the work that they
+// take of it.
+class Driving {
+ public:
+  virtual ~Driving() = default;
+  // The rates [W] of the energy that driving gives, dV/dt and what supports give to dashpots, and
+  // of what dashpots take of supports. Without velocities, the latter is left out. Damping books
+  // -v'f_d; the sum of both is what damping takes.
+  virtual Work driving_power(const At& at) const = 0;
+  // Adds the change of V [J] from one time to another at constant q (n).
+  virtual double potential_change(double from, double to, const VecView& q) const = 0;
+  // Writes df/dt [N/s] at constant q, for conservative forces and air, into `rate` (n).
+  virtual void force_rate(const At& at, MutableVec rate) const = 0;
+  // The corners of f(t) at constant q and v, ascending in time.
+  virtual std::vector<Corner> corners() const = 0;
+  // The forces of a system of constant K from the time t to the next corner; nothing if they are no
+  // such sums.
+  virtual std::optional<Forcing> forcing(double /*t*/) const { return {}; }
+};
+
 // A system that implements all capabilities above. Its accessors say which of them it has.
 class CapableSystem : public System,
                       public SplitStiffness,
@@ -143,7 +180,8 @@ class CapableSystem : public System,
                       public PiecewiseLinear,
                       public Validity,
                       public Kinks,
-                      public Damping {
+                      public Damping,
+                      public Driving {
  public:
   using System::System;
 };

@@ -13,6 +13,7 @@ ConstrainedSystem::ConstrainedSystem(std::shared_ptr<const System> system,
       validity_(system_->validity()),
       kinks_(system_->kinks()),
       damping_(system_->damping()),
+      driving_(system_->driving()),
       is_held_(std::move(is_held)) {
   for (Index i = 0; i < size(); ++i) {
     if (is_held_[i]) unknowns_.push_back(i);
@@ -59,6 +60,11 @@ std::optional<double> ConstrainedSystem::secant_friction(const BackwardRate& rat
   return power;
 }
 
+void ConstrainedSystem::force_rate(const At& at, MutableVec rate) const {
+  driving_->force_rate(at, rate);
+  for (const Index i : unknowns_) rate[i] = 0;
+}
+
 void ConstrainedSystem::damping_matrix(const At& at, SymmetricMatrix& c) const {
   damping_->damping_matrix(at, c);
   clear_held(c);
@@ -70,11 +76,11 @@ bool ConstrainedSystem::bound_damping(SymmetricMatrix& l) const {
   return true;
 }
 
-bool ConstrainedSystem::multiply_stiffness(const ConstVec& q, const ConstVec& x,
+bool ConstrainedSystem::multiply_stiffness(const At& at, const ConstVec& x,
                                            MutableVec y) const {
   Vec moved = x;
   for (const Index i : unknowns_) moved[i] = 0;
-  if (!system_->multiply_stiffness(q, moved, y)) return false;
+  if (!system_->multiply_stiffness(at, moved, y)) return false;
   for (const Index i : unknowns_) y[i] = 0;
   return true;
 }

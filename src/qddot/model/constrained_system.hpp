@@ -26,10 +26,10 @@ class ConstrainedSystem final : public CapableSystem {
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return system_->stiffness_pattern(); }
   bool has_stiffness() const override { return system_->has_stiffness(); }
-  bool bound_row_sums(const ConstVec& q, Vec& sums) const override {
-    return system_->bound_row_sums(q, sums);
+  bool bound_row_sums(const At& at, Vec& sums) const override {
+    return system_->bound_row_sums(at, sums);
   }
-  bool multiply_stiffness(const ConstVec& q, const ConstVec& x, MutableVec y) const override;
+  bool multiply_stiffness(const At& at, const ConstVec& x, MutableVec y) const override;
   Index stiffness_entries() const override { return system_->stiffness_entries(); }
   bool stiffness_is_constant() const override { return system_->stiffness_is_constant(); }
 
@@ -45,6 +45,7 @@ class ConstrainedSystem final : public CapableSystem {
   const Kinks* kinks() const override { return kinks_ ? this : nullptr; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
   const Damping* damping() const override { return damping_ ? this : nullptr; }
+  const Driving* driving() const override { return driving_ ? this : nullptr; }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override;
   void weighted_stiffness(const At& at, double compression_weight,
@@ -52,14 +53,14 @@ class ConstrainedSystem final : public CapableSystem {
   void mean_force(const At& a, const At& b, MutableVec f) const override;
   void assemble_laplacian(SymmetricMatrix& l) const override;
   bool bounds_stiffness() const override { return laplacian_->bounds_stiffness(); }
-  bool is_linear_at(const ConstVec& q) const override { return pieces_->is_linear_at(q); }
-  bool is_valid_at(const ConstVec& q) const override { return validity_->is_valid_at(q); }
+  bool is_linear_at(const At& at) const override { return pieces_->is_linear_at(at); }
+  bool is_valid_at(const At& at) const override { return validity_->is_valid_at(at); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
     return validity_->end_of_validity(from, to);
   }
   Index kink_count() const override { return kinks_->kink_count(); }
-  void kink_lengths(const ConstVec& q, MutableVec lengths) const override {
-    kinks_->kink_lengths(q, lengths);
+  void kink_lengths(const At& at, MutableVec lengths) const override {
+    kinks_->kink_lengths(at, lengths);
   }
 
   void friction(const At& at, MutableVec f) const override;
@@ -74,6 +75,13 @@ class ConstrainedSystem final : public CapableSystem {
   bool has_dashpots() const override { return damping_->has_dashpots(); }
   std::optional<double> damping_time() const override { return damping_->damping_time(); }
 
+  Work driving_power(const At& at) const override { return driving_->driving_power(at); }
+  double potential_change(double from, double to, const VecView& q) const override {
+    return driving_->potential_change(from, to, q);
+  }
+  void force_rate(const At& at, MutableVec rate) const override;
+  std::vector<Corner> corners() const override { return driving_->corners(); }
+
  private:
   void clear_held(SymmetricMatrix& k) const;
 
@@ -86,6 +94,7 @@ class ConstrainedSystem final : public CapableSystem {
   const Validity* validity_;
   const Kinks* kinks_;
   const Damping* damping_;
+  const Driving* driving_;
   std::vector<bool> is_held_;
   std::vector<Index> unknowns_;  // the held ones
   std::optional<Split> split_;   // of the system, held likewise

@@ -26,6 +26,7 @@ class DifferencedStiffness final : public System {
   void force(const At& at, MutableVec f) const override { system_->force(at, f); }
   bool is_conservative() const override { return system_->is_conservative(); }
   const Damping* damping() const override { return system_->damping(); }
+  const Driving* driving() const override { return system_->driving(); }
   bool is_autonomous() const override { return system_->is_autonomous(); }
   void stiffness(const At& at, SymmetricMatrix& k) const override;
   const SymmetricMatrix& stiffness_pattern() const override { return pattern_; }

@@ -52,6 +52,24 @@ class Swing {
   double cosine_, rate_;                  // l - middle, and l'/w, at the start
 };
 
+// Positions of nodes, and how far the points on curves are displaced; and a motion from there.
+template <int D>
+struct Placed {
+  using Point = Eigen::Matrix<double, D, 1>;
+
+  const Layout<D>& layout;
+  VecView q;
+  std::vector<Point> curves;
+
+  Point of(int curve) const { return curve < 0 ? Point(Point::Zero()) : curves[curve]; }
+};
+template <int D>
+struct PlacedMotion {
+  Placed<D> place;
+  std::vector<typename Placed<D>::Point> curve_rates;
+  VecView v;
+};
+
 // The springs of a network that hold in tension only (Holds::in_tension), and series of springs
 // that are one such spring (MasslessSeries).
 template <int D>
@@ -64,26 +82,29 @@ class InTension {
     Point place;
     SpringLaw law;
     bool is_series = false;  // of springs that stand on their own; see MasslessSeries
+    int curve = -1;          // of a fixed point that moves, see Network::Anchor
   };
 
   void add(const Spring& spring) { springs_.push_back(spring); }
   bool empty() const { return springs_.empty(); }
 
-  // Whether no spring is shorter than its rest length at q.
-  bool holds_at(const Layout<D>& layout, const VecView& q) const {
+  // Whether no spring is shorter than its rest length.
+  bool holds_at(const Placed<D>& now) const {
     return std::ranges::all_of(springs_, [&](const Spring& spring) {
-      return difference(layout, spring, q).squaredNorm() >= bound(spring);
+      return difference(spring, now).squaredNorm() >= bound(spring);
     });
   }
 
-  // The first time [s] between two states at which a spring gets shorter than its rest length;
+  // The first time [s] between t_from and t_to at which a spring gets shorter than its rest length;
   // nothing if none does. In a step that resolves the spring's vibration, h w <= 2, each d follows
   // the cubic that has its values and rates at both ends. For longer steps see Swing; these need
-  // the system's force(q, f).
+  // the system's force(is_end, f).
   template <class Force>
-  std::optional<double> first_slack(const Layout<D>& layout, const Vec& mass, const State& from,
-                                    const State& to, const Force& force) const {
-    const double h = to.t - from.t;
+  std::optional<double> first_slack(const Vec& mass, double t_from, const PlacedMotion<D>& from,
+                                    double t_to, const PlacedMotion<D>& to,
+                                    const Force& force) const {
+    const double h = t_to - t_from;
+    const Layout<D>& layout = from.place.layout;
     Vec pull_from, pull_to;
     std::optional<double> first;
     for (const Spring& spring : springs_) {
@@ -92,15 +113,15 @@ class InTension {
       double last;  // the length at the end, squared
       if (h * w > longest_resolved && std::isfinite(w)) {
         if (pull_from.size() == 0) {
-          force(from.q, pull_from);
-          force(to.q, pull_to);
+          force(false, pull_from);
+          force(true, pull_to);
         }
-        const Swing swing(motion(layout, mass, spring, from, pull_from),
-                          motion(layout, mass, spring, to, pull_to), w, h);
+        const Swing swing(motion(mass, spring, from, pull_from), motion(mass, spring, to, pull_to),
+                          w, h);
         s = swing.first_slack((1 - forgiven) * spring.law.rest_length);
         last = swing.last() * swing.last();
       } else {
-        const SquaredLength length = path(layout, spring, from, to, std::isfinite(w));
+        const SquaredLength length = path(spring, from, to, h, std::isfinite(w));
         s = first_below(length, bound(spring));
         last = length.back();
       }
@@ -110,7 +131,7 @@ class InTension {
       if (s && (!first || *s < *first)) first = s;
     }
     if (!first) return {};
-    return from.t + *first * h;
+    return t_from + *first * h;
   }
 
  private:
@@ -121,13 +142,19 @@ class InTension {
     const double l = (1 - forgiven) * spring.law.rest_length;
     return l * l;
   }
-  static Point difference(const Layout<D>& layout, const Spring& spring, const VecView& q) {
-    if (spring.j < 0) return spring.place - layout.at(q, spring.i);
-    return spring.place.cwiseProduct(layout.at(q, spring.j)) - layout.at(q, spring.i);
+  static Point difference(const Spring& spring, const Placed<D>& now) {
+    const Point own = now.layout.at(now.q, spring.i);
+    if (spring.j < 0) return spring.place + now.of(spring.curve) - own;
+    return spring.place.cwiseProduct(now.layout.at(now.q, spring.j)) - own;
   }
-  static Point rate(const Layout<D>& layout, const Spring& spring, const Vec& v) {
-    if (spring.j < 0) return -layout.at(v, spring.i);
-    return difference(layout, spring, v);
+  static Point rate(const Spring& spring, const PlacedMotion<D>& now) {
+    const Point apart = rate(now.place.layout, spring, now.v);
+    return spring.curve < 0 ? apart : Point(apart + now.curve_rates[spring.curve]);
+  }
+  // The same of a point that rests.
+  static Point rate(const Layout<D>& layout, const Spring& spring, const VecView& v) {
+    const Point own = layout.at(v, spring.i);
+    return spring.j < 0 ? Point(-own) : spring.place.cwiseProduct(layout.at(v, spring.j)) - own;
   }
 
   // The frequency [rad/s] of the spring alone; infinite at a massless node.
@@ -136,29 +163,30 @@ class InTension {
                      (per_mass(layout, mass, spring.i) + per_mass(layout, mass, spring.j)));
   }
 
-  // The length's motion at one end of a step, by the system's forces there.
-  static LengthMotion motion(const Layout<D>& layout, const Vec& mass, const Spring& spring,
-                             const State& state, const Vec& pull) {
-    const Point d = difference(layout, spring, state.q), v = rate(layout, spring, state.v);
+  // The length's motion at one end of a step, by the system's forces there; its point, if it has
+  // one, does not accelerate.
+  static LengthMotion motion(const Vec& mass, const Spring& spring, const PlacedMotion<D>& now,
+                             const Vec& pull) {
+    const Point d = difference(spring, now.place), v = rate(spring, now);
     Vec a = pull;
     for (Index i = 0; i < a.size(); ++i) a[i] = mass[i] > 0 ? a[i] / mass[i] : 0;
     const double l = d.norm();
     if (!(l > 0)) return {};
     const double along = v.dot(d) / l, turning = (v.squaredNorm() - along * along) / l;
-    const double pull_along = rate(layout, spring, a).dot(d) / l;
+    const double pull_along = rate(now.place.layout, spring, a).dot(d) / l;
     return {l, along, pull_along + turning, turning};
   }
 
   // The squared length on the cubic; on a straight line if the rates say nothing, as at a massless
   // node.
-  static SquaredLength path(const Layout<D>& layout, const Spring& spring, const State& from,
-                            const State& to, bool uses_rates) {
-    const Point a = difference(layout, spring, from.q), d = difference(layout, spring, to.q);
-    const double third = (to.t - from.t) / 3;
+  static SquaredLength path(const Spring& spring, const PlacedMotion<D>& from,
+                            const PlacedMotion<D>& to, double h, bool uses_rates) {
+    const Point a = difference(spring, from.place), d = difference(spring, to.place);
+    const double third = h / 3;
     Point b = a + (d - a) / 3, c = d - (d - a) / 3;
     if (uses_rates) {
-      b = a + third * rate(layout, spring, from.v);
-      c = d - third * rate(layout, spring, to.v);
+      b = a + third * rate(spring, from);
+      c = d - third * rate(spring, to);
     }
     // The cubic's Bernstein coefficients, and their products.
     return {a.dot(a),

@@ -9,6 +9,7 @@
 #include "qddot/model/capabilities.hpp"
 #include "qddot/model/compact_links.hpp"
 #include "qddot/model/directions.hpp"
+#include "qddot/model/driven_network.hpp"
 #include "qddot/model/in_tension.hpp"
 #include "qddot/model/kernels/springs_by_node.hpp"
 #include "qddot/model/kernels/stiffness_kernel.hpp"
@@ -32,6 +33,8 @@ template <int D>
 class MassSpring final : public CapableSystem {
   using Point = Eigen::Matrix<double, D, 1>;
   using Block = Eigen::Matrix<double, D, D>;
+  using Moved = typename SpringLists<D>::Moved;
+  using Curves = std::vector<Point>;
 
  public:
   MassSpring(Network network, Forces forces)
@@ -40,34 +43,37 @@ class MassSpring final : public CapableSystem {
 
   double potential(const At& at) const override {
     const VecView& q = at.q;
-    double v = constant_energy_ - weight_.dot(q);
+    const Curves curves = driven_.values(at.t);
+    double v = constant_energy_ - weight_.dot(q) + driven_.load_energy(at);
     if (by_node_) {
-      v += by_node_->half_sum_energies(q);
+      v += by_node_->half_sum_energies(at);
       for_each_anchor([&](const Network::Anchor& anchor) {
-        const Point d = anchor.point.template head<D>() - layout_.at(q, anchor.i);
-        v += spring_energy(anchor.law, d) / 2;
+        v += spring_energy(anchor.law, between({q, curves}, anchor)) / 2;
       });
       return v;
     }
-    springs_->for_each(
-        [&](const auto& spring) { v += spring_energy(spring.law, springs_->between(q, spring)); });
+    springs_->for_each([&](const auto& spring) {
+      v += spring_energy(spring.law, springs_->between({q, curves}, spring));
+    });
     return v;
   }
 
   void force(const At& at, MutableVec f) const override {
-    const VecView& q = at.q;
     if (by_node_ && has_dashpots_ && at.v.size() > 0) {
       Vec friction(size());
       damped_force(at, f, friction, nullptr);
       return;
     }
     if (by_node_) {
-      by_node_->sum_forces(q, f);
+      by_node_->sum_forces(at, f);
     } else {
+      const Curves curves = driven_.values(at.t);
+      const Moved now{at.q, curves};
       f = weight_;
+      driven_.add_loads(at.t, f);
       springs_->add_forces(
           [&](const auto& spring) {
-            return spring_force(spring.law, springs_->between(q, spring));
+            return spring_force(spring.law, springs_->between(now, spring));
           },
           f);
     }
@@ -78,7 +84,7 @@ class MassSpring final : public CapableSystem {
                                      BesideForce* beside) const override {
     // Air would come after the work beside.
     if (!by_node_ || !has_dashpots_ || (beside && air_damping_ > 0)) return {};
-    const double sum = by_node_->sum_damped_forces(at.q, at.v, f, friction, beside);
+    const double sum = by_node_->sum_damped_forces(at, f, friction, beside);
     if (air_damping_ > 0) {
       add_air(at, f);
       add_air(at, friction);
@@ -88,15 +94,17 @@ class MassSpring final : public CapableSystem {
 
   double force_beside(const At& at, MutableVec f, BesideForce& beside) const override {
     if (by_node_ && (!is_damped() || at.v.size() == 0)) {
-      return by_node_->sum_forces(at.q, f, beside);
+      return by_node_->sum_forces(at, f, beside);
     }
     return System::force_beside(at, f, beside);
   }
 
   void mean_force(const At& start, const At& end, MutableVec f) const override {
-    const VecView &a = start.q, &b = end.q;
-    if (by_node_) return by_node_->sum_mean_forces(a, b, f);
+    if (by_node_) return by_node_->sum_mean_forces(start, end, f);
+    const Curves curves = driven_.values(start.t);
+    const Moved a{start.q, curves}, b{end.q, curves};
     f = weight_;
+    driven_.add_loads(start.t, f);
     springs_->add_forces(
         [&](const auto& spring) {
           return spring_discrete_gradient(spring.law, springs_->between(a, spring),
@@ -109,25 +117,27 @@ class MassSpring final : public CapableSystem {
 
   void weighted_stiffness(const At& at, double compression_weight,
                           SymmetricMatrix& k) const override {
-    const VecView& q = at.q;
+    const Curves curves = driven_.values(at.t);
+    const Moved now{at.q, curves};
     const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
     };
     const ForStiffness& own = for_stiffness();
-    if (!by_node_) return own.blocks.assemble(q, k, block);
-    own.columns->stiffness(*by_node_, q, compression_weight, k);
-    add_left_out(own, q, k, block);
+    if (!by_node_) return own.blocks.assemble(now, k, block);
+    own.columns->stiffness(*by_node_, at, compression_weight, k);
+    add_left_out(own, now, k, block);
   }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override {
-    const VecView& q = at.q;
+    const Curves curves = driven_.values(at.t);
+    const Moved now{at.q, curves};
     const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
     };
     const ForStiffness& own = for_stiffness();
-    if (!by_node_) return own.blocks.assemble(q, k, block);
-    own.columns->material_stiffness(*by_node_, q, k);
-    add_left_out(own, q, k, block);
+    if (!by_node_) return own.blocks.assemble(now, k, block);
+    own.columns->material_stiffness(*by_node_, at, k);
+    add_left_out(own, now, k, block);
   }
 
   const SymmetricMatrix& stiffness_pattern() const override {
@@ -135,20 +145,21 @@ class MassSpring final : public CapableSystem {
   }
   bool has_stiffness() const override { return true; }
   bool stiffness_is_constant() const override { return linear_; }
-  bool bound_row_sums(const ConstVec& q, Vec& sums) const override {
+  bool bound_row_sums(const At& at, Vec& sums) const override {
     if (!by_node_) return false;  // so few have their K at once
     sums.resize(size());
-    by_node_->sum_stiffness_rows(VecView(q), sums);
+    by_node_->sum_stiffness_rows(at, sums);
+    const Curves curves = driven_.values(at.t);
     for (const auto& anchor : network_.anchors) {
-      const Point d = anchor.point.template head<D>() - layout_.at(VecView(q), anchor.i);
+      const Point d = between({at.q, curves}, anchor);
       layout_.add(-spring_stiffness(anchor.law, d).cwiseAbs().rowwise().sum(), anchor.i, sums);
     }
     return true;
   }
 
-  bool multiply_stiffness(const ConstVec& q, const ConstVec& x, MutableVec y) const override {
+  bool multiply_stiffness(const At& at, const ConstVec& x, MutableVec y) const override {
     if (!by_node_) return false;
-    by_node_->multiply_stiffness(VecView(q), VecView(x), y);
+    by_node_->multiply_stiffness(at, VecView(x), y);
     return true;
   }
 
@@ -158,7 +169,7 @@ class MassSpring final : public CapableSystem {
   const Damping* damping() const override { return is_damped() ? this : nullptr; }
   void friction(const At& at, MutableVec f) const override {
     if (by_node_ && has_dashpots_) {
-      by_node_->sum_friction(at.q, at.v, f);
+      by_node_->sum_friction(at, f);
       if (air_damping_ > 0) add_air(at, f);
     } else {
       f.setZero();
@@ -170,13 +181,16 @@ class MassSpring final : public CapableSystem {
     if (!has_dashpots_) return {};
     const SpringLists<D>& springs = lists();
     const VecView q0 = rate.q0, q1 = rate.q1, q2 = rate.q2;
+    const Curves curves0 = driven_.values(rate.t0), curves1 = driven_.values(rate.t1),
+                 curves2 = driven_.values(rate.t2);
     double power = 0;
     f.setZero();
     springs.add_forces(
         [&](const auto& spring) {
           const SecantDashpot dashpot =
-              secant_dashpot(spring.law, springs.between(q0, spring), springs.between(q1, spring),
-                             springs.between(q2, spring), rate);
+              secant_dashpot(spring.law, springs.between({q0, curves0}, spring),
+                             springs.between({q1, curves1}, spring),
+                             springs.between({q2, curves2}, spring), rate);
           power += dashpot.power;
           return dashpot.force;
         },
@@ -219,14 +233,14 @@ class MassSpring final : public CapableSystem {
   const Kinks* kinks() const override { return kinks_ > 0 ? this : nullptr; }
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
-  bool is_linear_at(const ConstVec& at) const override {
-    const VecView q = at;
+  bool is_linear_at(const At& at) const override {
+    const Curves curves = driven_.values(at.t);
     const signed char* direction = directions_.data();
     bool all = true;
     const SpringLists<D>& springs = lists();
     springs.for_each([&](const auto& spring) {
       const int own = *direction++;
-      all = all & (own == 0 || own * springs.between(q, spring)[0] > 0);
+      all = all & (own == 0 || own * springs.between({at.q, curves}, spring)[0] > 0);
     });
     return all;
   }
@@ -234,7 +248,9 @@ class MassSpring final : public CapableSystem {
   bool bounds_stiffness() const override { return !has_quartic_; }
   // A network with rest lengths of zero has the same stiffness at every q.
   void assemble_laplacian(SymmetricMatrix& l) const override {
-    for_stiffness().blocks.assemble(Vec(Vec::Zero(size())), l,
+    const Vec anywhere = Vec::Zero(size());
+    const Curves curves = driven_.values(0);
+    for_stiffness().blocks.assemble({anywhere, curves}, l,
                                     [](const SpringLaw& law, const Point&) -> Block {
                                       return -law.stiffness * Block::Identity();
                                     });
@@ -242,21 +258,43 @@ class MassSpring final : public CapableSystem {
 
   // A length of zero is a kink only on a line.
   Index kink_count() const override { return kinks_; }
-  void kink_lengths(const ConstVec& at, MutableVec lengths) const override {
-    const VecView q = at;
+  void kink_lengths(const At& at, MutableVec lengths) const override {
+    const Curves curves = driven_.values(at.t);
     Index i = 0;
     const SpringLists<D>& springs = lists();
     springs.for_each([&](const auto& spring) {
-      if (turns_over(spring.law)) lengths[i++] = springs.between(q, spring)[0];
+      if (turns_over(spring.law)) lengths[i++] = springs.between({at.q, curves}, spring)[0];
     });
   }
 
-  bool is_valid_at(const ConstVec& q) const override { return in_tension_.holds_at(layout_, q); }
+  bool is_valid_at(const At& at) const override { return in_tension_.holds_at(placed(at)); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
-    return in_tension_.first_slack(layout_, mass(), from, to, [this](const Vec& q, Vec& f) {
-      f.resize(size());
-      force(q, f);
-    });
+    const auto moving = [&](const State& state) {
+      return PlacedMotion<D>{placed(state), driven_.rates(state.t), state.v};
+    };
+    return in_tension_.first_slack(mass(), from.t, moving(from), to.t, moving(to),
+                                   [&](bool is_end, Vec& f) {
+                                     f.resize(size());
+                                     const State& state = is_end ? to : from;
+                                     force({state.t, state.q}, f);
+                                   });
+  }
+
+  bool is_autonomous() const override { return !driven_.is_driven(); }
+  const Driving* driving() const override { return driven_.is_driven() ? this : nullptr; }
+  Work driving_power(const At& at) const override { return driven_.power(at); }
+  double potential_change(double from, double to, const VecView& q) const override {
+    return driven_.potential_change(from, to, q);
+  }
+  void force_rate(const At& at, MutableVec rate) const override { driven_.force_rate(at, rate); }
+  std::vector<Corner> corners() const override { return driven_.corners(); }
+  std::optional<Forcing> forcing(double t) const override {
+    if (!linear_ || keeps_directions()) return {};
+    Vec constant = weight_;
+    for (const auto& anchor : network_.anchors) {
+      layout_.add(anchor.law.stiffness * anchor.point.template head<D>(), anchor.i, constant);
+    }
+    return driven_.forcing(t, constant);
   }
 
  private:
@@ -272,6 +310,7 @@ class MassSpring final : public CapableSystem {
   MassSpring(Network&& network, Forces forces, Layout<D> layout)
       : CapableSystem(masses(network, layout)),
         layout_(std::move(layout)),
+        driven_(network, layout_),
         weight_(weights(network, layout_)),
         constant_energy_(network.constant_energy),
         air_damping_(network.air_damping) {
@@ -286,13 +325,14 @@ class MassSpring final : public CapableSystem {
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       network.links = {};  // most of the memory of many nodes
-      by_node_.emplace(network, links_, layout_, weight_);
+      by_node_.emplace(network, links_, layout_, weight_, driven_);
     } else {
       springs_.emplace(network, layout_);
     }
     network_ = {.dimension = D,
                 .anchors = std::move(network.anchors),
-                .image_links = std::move(network.image_links)};
+                .image_links = std::move(network.image_links),
+                .curves = std::move(network.curves)};
   }
 
   bool is_damped() const { return has_dashpots_ || air_damping_ > 0; }
@@ -347,7 +387,8 @@ class MassSpring final : public CapableSystem {
 
   // See ForStiffness; `network` has the springs of this one.
   std::unique_ptr<const MassSpring> dashpots_of(Network network) const {
-    network.node_mass.setOnes(layout_.nodes());  // of no effect on C
+    network.node_mass.setOnes(layout_.nodes());  // of no effect on C, as are loads
+    network.driven_loads.clear();
     for_each_spring(network, [](auto& spring) {
       spring.law = {.stiffness = spring.law.damping, .rest_length = spring.law.rest_length};
       spring.holds = Holds::always;
@@ -360,10 +401,11 @@ class MassSpring final : public CapableSystem {
   // Not for dashpots that vectors sum.
   void add_friction(const At& at, MutableVec f) const {
     if (has_dashpots_) {
+      const Curves curves = driven_.values(at.t), rates = driven_.rates(at.t);
       springs_->add_forces(
           [&](const auto& spring) {
-            return dashpot_force(spring.law, springs_->between(at.q, spring),
-                                 springs_->apart(at.v, spring));
+            return dashpot_force(spring.law, springs_->between({at.q, curves}, spring),
+                                 springs_->apart({at.v, rates}, spring));
           },
           f);
     }
@@ -444,6 +486,12 @@ class MassSpring final : public CapableSystem {
     return whole;
   }
 
+  // d of an anchor.
+  Point between(const Moved& at, const Network::Anchor& anchor) const {
+    return anchor.point.template head<D>() + at.of(anchor.curve) - layout_.at(at.q, anchor.i);
+  }
+  Placed<D> placed(const At& at) const { return {layout_, at.q, driven_.values(at.t)}; }
+
   bool keeps_directions() const { return !directions_.empty(); }
   bool turns_over(const SpringLaw& law) const {
     return D == 1 && law.rest_length > 0 && !keeps_directions();
@@ -462,24 +510,25 @@ class MassSpring final : public CapableSystem {
     }
     for (const auto& anchor : network.anchors) {
       if (anchor.holds == Holds::in_tension) {
-        in_tension_.add({anchor.i, -1, point(anchor.point), anchor.law});
+        in_tension_.add({anchor.i, -1, point(anchor.point), anchor.law, false, anchor.curve});
       }
     }
     for (const MasslessSeries& series : massless_series(network)) {
       const Point place = series.j < 0 ? point(series.point) : Point(Point::Ones());
-      in_tension_.add({series.i, series.j, place, series.law, true});
+      in_tension_.add({series.i, series.j, place, series.law, true, series.curve});
     }
   }
 
   // Adds the springs that the kernel of K leaves out.
   template <class BlockOf>
-  static void add_left_out(const ForStiffness& own, const VecView& q, SymmetricMatrix& k,
+  static void add_left_out(const ForStiffness& own, const Moved& q, SymmetricMatrix& k,
                            const BlockOf& block) {
     for (const int e : own.columns->links_left_out()) own.blocks.add_link_block(q, k, block, e);
     own.blocks.add_image_blocks(q, k, block);
   }
 
   Layout<D> layout_;
+  DrivenNetwork<D> driven_;
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none

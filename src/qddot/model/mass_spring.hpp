@@ -5,6 +5,7 @@
 
 #include "qddot/model/spring.hpp"
 #include "qddot/model/system.hpp"
+#include "qddot/model/time_curve.hpp"
 
 namespace qddot {
 
@@ -32,7 +33,7 @@ struct Network {
     bool stiff = false;
     int direction = 0;
   };
-  // A spring between a free node and a fixed point [m].
+  // A spring between a free node and a fixed point [m], or one that moves: point + curve(t).
   struct Anchor {
     int i;
     Eigen::Vector3d point;
@@ -40,6 +41,13 @@ struct Network {
     Holds holds = Holds::always;
     bool stiff = false;
     int direction = 0;
+    int curve = -1;  // of `curves`; -1: it is fixed
+  };
+  // A force factor curve(t) on a node [N], with V = -force.(x - origin).
+  struct DrivenLoad {
+    int i, curve;
+    double factor;
+    Eigen::Vector3d origin;
   };
 
   int dimension = 3;                                  // D = 1, 2 or 3
@@ -54,6 +62,9 @@ struct Network {
   std::vector<unsigned> zero_coordinates{};
   Vec load{};                           // constant forces beside the weight [N], D N; empty = none
   double air_damping = 0;               // alpha [1/s]: each node feels the force -alpha m v
+  // Displacements of moving points, loads, or accelerations, from t = 0 on.
+  std::vector<TimeCurve> curves{};
+  std::vector<DrivenLoad> driven_loads{};
   bool uses_constant_stiffness = true;  // false: K counts as varying even where it is constant
   bool offers_split = false;            // whether the system offers Split, by `stiff`
 };
@@ -64,7 +75,8 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 
 // Makes a System of the network, with one unknown for each of the D N coordinates that may move, in
 // order:
-//   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x.
+//   V(q) = constant + sum over springs of V_spring - sum over nodes of (m g + load).x
+// and, if there are curves of time, driven loads beside. Then the system offers Driving.
 // f and K are sums over springs (see spring.hpp). K has a block for each node and for each pair of
 // nodes that a link joins. It is constant if every law is linear or every spring has a direction.
 // If any spring has a dashpot, or there is air, the force is that of positions minus C(q) v, and

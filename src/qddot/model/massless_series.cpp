@@ -1,5 +1,6 @@
 #include "qddot/model/massless_series.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace qddot {
@@ -14,6 +15,7 @@ struct Touching {
   Eigen::Vector3d point;
   SpringLaw law;
   bool folds;  // in compression
+  int curve = -1;
 };
 
 class Joints {
@@ -25,8 +27,8 @@ class Joints {
       touching_[i].push_back({spring, j, {}, law, folds(holds)});
       touching_[j].push_back({spring++, i, {}, law, folds(holds)});
     }
-    for (const auto& [i, point, law, holds, stiff, direction] : network.anchors) {
-      touching_[i].push_back({spring++, fixed, point, law, folds(holds)});
+    for (const auto& [i, point, law, holds, stiff, direction, curve] : network.anchors) {
+      touching_[i].push_back({spring++, fixed, point, law, folds(holds), curve});
     }
     images_.resize(touching_.size());
     for (const auto& link : network.image_links) images_[link.i] = images_[link.j] = true;
@@ -40,6 +42,8 @@ class Joints {
       if (!one.folds) return false;
       if (one.law.quartic > 0 || !(one.law.stiffness > 0) || one.law.damping > 0) return false;
     }
+    const auto drives = [&](const Network::DrivenLoad& load) { return load.i == node; };
+    if (std::ranges::any_of(network_.driven_loads, drives)) return false;
     const int d = network_.dimension;
     return network_.load.size() == 0 || network_.load.segment(d * node, d).isZero(0);
   }
@@ -60,7 +64,11 @@ class Joints {
     if (last == node || at->other == node || !(rest_length > 0)) return {};
     if (at->other != fixed && network_.node_mass[at->other] == 0) return {};
     return MasslessSeries{
-        node, at->other, at->point, {.stiffness = 1 / compliance, .rest_length = rest_length}};
+        node,
+        at->other,
+        at->point,
+        {.stiffness = 1 / compliance, .rest_length = rest_length},
+        at->curve};
   }
 
   const std::vector<Touching>& touching(int node) const { return touching_[node]; }

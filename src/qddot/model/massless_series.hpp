@@ -12,6 +12,7 @@ struct MasslessSeries {
   int i, j;               // the nodes at its ends; j < 0: `point` is the other end
   Eigen::Vector3d point;  // [m]
   SpringLaw law;
+  int curve = -1;  // of the point, see Network::Anchor
 };
 
 // The series of a network. A node between has two springs and no load, and these are linear. Both

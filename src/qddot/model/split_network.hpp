@@ -15,6 +15,7 @@ inline Network half_of_split(Network network, bool stiff) {
   if (stiff) {
     network.gravity.setZero();
     network.load.resize(0);
+    network.driven_loads.clear();
     network.constant_energy = 0;
   }
   network.offers_split = false;

@@ -31,6 +31,7 @@ class SpringLists {
     int i;
     Point point;
     SpringLaw law;
+    int curve;
   };
   // i, j: nodes.
   struct EdgeLink {
@@ -42,6 +43,15 @@ class SpringLists {
     int i;
     Point point;
     SpringLaw law;
+    int curve;
+  };
+  // Positions, and how far moving points are displaced: by one vector for each curve of the
+  // network. Or velocities of both.
+  struct Moved {
+    VecView q;
+    const std::vector<Point>& curves;
+
+    Point of(int curve) const { return curve < 0 ? Point(Point::Zero()) : curves[curve]; }
   };
 
   // Keeps a reference to the layout, which must outlive it.
@@ -54,9 +64,9 @@ class SpringLists {
     for (const auto& anchor : network.anchors) {
       const Point point = Eigen::Map<const Point>(anchor.point.data());
       if (layout_.is_full(anchor.i)) {
-        anchors_.push_back({layout_.first(anchor.i), point, anchor.law});
+        anchors_.push_back({layout_.first(anchor.i), point, anchor.law, anchor.curve});
       } else {
-        edge_anchors_.push_back({anchor.i, point, anchor.law});
+        edge_anchors_.push_back({anchor.i, point, anchor.law, anchor.curve});
       }
     }
   }
@@ -76,27 +86,34 @@ class SpringLists {
   }
 
   // d from a spring's end i to its end j: diag(mirror) x_j - x_i or point - x_i.
-  Point between(const VecView& q, const Link& link) const {
-    return q.segment<D>(link.j) - q.segment<D>(link.i);
+  Point between(const Moved& at, const Link& link) const {
+    return at.q.template segment<D>(link.j) - at.q.template segment<D>(link.i);
   }
-  Point between(const VecView& q, const Image& image) const {
-    return image.mirror.cwiseProduct(q.segment<D>(image.j)) - q.segment<D>(image.i);
+  Point between(const Moved& at, const Image& image) const {
+    return image.mirror.cwiseProduct(at.q.template segment<D>(image.j)) -
+           at.q.template segment<D>(image.i);
   }
-  Point between(const VecView& q, const Anchor& anchor) const {
-    return anchor.point - q.segment<D>(anchor.i);
+  Point between(const Moved& at, const Anchor& anchor) const {
+    if (anchor.curve < 0) return anchor.point - at.q.template segment<D>(anchor.i);
+    return anchor.point + at.of(anchor.curve) - at.q.template segment<D>(anchor.i);
   }
-  Point between(const VecView& q, const EdgeLink& link) const {
-    return link.mirror.cwiseProduct(layout_.at(q, link.j)) - layout_.at(q, link.i);
+  Point between(const Moved& at, const EdgeLink& link) const {
+    return link.mirror.cwiseProduct(layout_.at(at.q, link.j)) - layout_.at(at.q, link.i);
   }
-  Point between(const VecView& q, const EdgeAnchor& anchor) const {
-    return anchor.point - layout_.at(q, anchor.i);
+  Point between(const Moved& at, const EdgeAnchor& anchor) const {
+    return anchor.point + at.of(anchor.curve) - layout_.at(at.q, anchor.i);
   }
 
-  // The rate of change of d at velocities v.
+  // The rate of change of d at these velocities.
   template <class Spring>
-  Point apart(const VecView& v, const Spring& spring) const {
-    if constexpr (std::is_same_v<Spring, Anchor>) return -v.segment<D>(spring.i);
-    if constexpr (std::is_same_v<Spring, EdgeAnchor>) return -layout_.at(v, spring.i);
+  Point apart(const Moved& v, const Spring& spring) const {
+    if constexpr (std::is_same_v<Spring, Anchor>) {
+      if (spring.curve < 0) return -v.q.template segment<D>(spring.i);
+      return v.of(spring.curve) - v.q.template segment<D>(spring.i);
+    }
+    if constexpr (std::is_same_v<Spring, EdgeAnchor>) {
+      return v.of(spring.curve) - layout_.at(v.q, spring.i);
+    }
     return between(v, spring);
   }
 

@@ -16,6 +16,7 @@ template <int D>
 class StiffnessBlocks {
  public:
   using Lists = SpringLists<D>;
+  using Moved = typename Lists::Moved;
   using Link = typename Lists::Link;
   using Image = typename Lists::Image;
   using Anchor = typename Lists::Anchor;
@@ -45,7 +46,7 @@ class StiffnessBlocks {
   // Sets K to the sum over all springs of B = block(law, d), with S = diag(mirror): K_ii -= B,
   // K_jj -= S B S, K_ij += B S. If i = j, all three are one block.
   template <class BlockOf>
-  void assemble(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void assemble(const Moved& q, SymmetricMatrix& k, const BlockOf& block) const {
     k.coeffs().setZero();
     springs_.for_each([&](const auto& spring) {
       subtract_own_blocks(spring, block(spring.law, springs_.between(q, spring)), k);
@@ -56,7 +57,7 @@ class StiffnessBlocks {
 
   // Adds the off-diagonal block of link number e.
   template <class BlockOf>
-  void add_link_block(const VecView& q, SymmetricMatrix& k, const BlockOf& block,
+  void add_link_block(const Moved& q, SymmetricMatrix& k, const BlockOf& block,
                       std::size_t e) const {
     const Link& link = springs_.links()[e];
     add_below_diagonal(k, std::min(link.i, link.j), link_places_[e],
@@ -65,7 +66,7 @@ class StiffnessBlocks {
 
   // Adds the off-diagonal blocks of images and of links whose nodes have fewer unknowns.
   template <class BlockOf>
-  void add_image_blocks(const VecView& q, SymmetricMatrix& k, const BlockOf& block) const {
+  void add_image_blocks(const Moved& q, SymmetricMatrix& k, const BlockOf& block) const {
     for (std::size_t e = 0; e < springs_.images().size(); ++e) {
       const Image& image = springs_.images()[e];
       const auto& [i, j, mirror, law] = image;

@@ -24,13 +24,29 @@ using MutableVec = Eigen::Ref<Vec>;
 // diagonal entry, even a zero. Multiply with selfadjointView<Eigen::Lower>().
 using SymmetricMatrix = Eigen::SparseMatrix<double>;
 
+// The energy that damping has taken, and that moving supports and changing loads have given [J]; or
+// the rates of both [W]. An exact motion keeps E + dissipated - driven.
+struct Work {
+  double dissipated = 0, driven = 0;
+
+  double taken() const { return dissipated - driven; }
+  Work& operator+=(const Work& other) {
+    dissipated += other.dissipated;
+    driven += other.driven;
+    return *this;
+  }
+  friend Work operator+(Work a, const Work& b) { return a += b; }
+  friend Work operator-(const Work& a, const Work& b) { return a + -1.0 * b; }
+  friend Work operator*(double s, const Work& a) { return {s * a.dissipated, s * a.driven}; }
+};
+
 // The state of a system at time t [s]: unknown positions q [m], node after node (x0 y0 z0 x1 ...),
-// and velocities v = q' [m/s]. Both have length n = System::size(). `dissipated` is the energy that
-// damping has taken on the way [J], by the method's own quadrature; a run adds to it.
+// and velocities v = q' [m/s]. Both have length n = System::size(). `work` is that on the way [J],
+// by the method's own quadrature; a run adds to it.
 struct State {
   double t = 0;
   Vec q, v;
-  double dissipated = 0;
+  Work work{};
 };
 
 // A vector of numbers that is read in place: those of a Vec, or of a part of one, which must
@@ -49,7 +65,8 @@ class VecView : public Eigen::Map<const Vec> {
 // n. They refer to vectors that must outlive this, and cost no copy.
 //
 // Formulas for f(t, q) leave v out: it is then empty. Positions alone leave out t as well: it is
-// then NaN. So only a system whose is_conservative() and is_autonomous() hold takes those.
+// then NaN. A system whose is_conservative() and is_autonomous() hold takes those; one with Driving
+// takes them as at its start, t = 0.
 struct At {
   At(double time, VecView positions, VecView velocities) : t(time), q(positions), v(velocities) {}
   At(double time, VecView positions) : At(time, positions, VecView(nullptr, 0)) {}
@@ -77,6 +94,7 @@ class PiecewiseLinear;
 class Validity;
 class Kinks;
 class Damping;
+class Driving;
 struct Split;
 
 // A mechanical system with the Lagrangian L = T - V, T = 1/2 v'Mv, as in the lecture. It gives M,
@@ -127,12 +145,12 @@ class System {
   // Writes K = df/dq [N/m] into `k`, which must have the pattern stiffness_pattern(). Throws
   // std::logic_error if the system computes no K.
   virtual void stiffness(const At& at, SymmetricMatrix& k) const;
-  // Writes the sums of |K_ij| over each row i at q [N/m], or no less, found without K, into `sums`
+  // Writes the sums of |K_ij| over each row i [N/m], or no less, found without K, into `sums`
   // (n) and returns true. Returns false if the system has no way that is cheaper than its K.
-  virtual bool bound_row_sums(const ConstVec&, Vec& /*sums*/) const { return false; }
-  // Writes K(q) x [N], found without K, into `y` and returns true; q, x, y: n. Returns false if the
+  virtual bool bound_row_sums(const At&, Vec& /*sums*/) const { return false; }
+  // Writes K x [N], found without K, into `y` and returns true; x, y: n. Returns false if the
   // system has no way to it that is cheaper than its K.
-  virtual bool multiply_stiffness(const ConstVec& /*q*/, const ConstVec& /*x*/,
+  virtual bool multiply_stiffness(const At& /*at*/, const ConstVec& /*x*/,
                                   MutableVec /*y*/) const {
     return false;
   }
@@ -150,6 +168,7 @@ class System {
   virtual const Validity* validity() const { return nullptr; }
   virtual const Kinks* kinks() const { return nullptr; }
   virtual const Damping* damping() const { return nullptr; }
+  virtual const Driving* driving() const { return nullptr; }
   // The stiff and the soft forces. A system of blocks has none; each of its blocks may.
   virtual const Split* split() const { return nullptr; }
   // The systems that no force couples, in order, each with a run of consecutive unknowns of its
@@ -172,10 +191,16 @@ inline void require_stiffness(const System& system) {
   }
 }
 
-// Throws std::invalid_argument if forces depend on time, or on velocities by other ways than
-// Damping, so that the energy and what damping has taken are no constant of the motion.
+// Whether the energy, and what damping has taken and driving has given, are a constant of the
+// motion: forces depend on velocities by Damping alone, and on time by Driving.
+inline bool keeps_balance(const System& system) {
+  return (system.is_conservative() || system.damping()) &&
+         (system.is_autonomous() || system.driving());
+}
+
+// Throws std::invalid_argument for a system without that constant.
 inline void require_constant_energy(const System& system) {
-  if ((!system.is_conservative() && !system.damping()) || !system.is_autonomous()) {
+  if (!keeps_balance(system)) {
     throw std::invalid_argument(
         "the forces depend on time or velocities, and this takes the energy for a constant: run "
         "the system by one method at two steps or tolerances, and compare");

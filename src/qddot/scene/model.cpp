@@ -55,14 +55,30 @@ void expand_into(const Pieces& pieces, const State& state, bool falls, std::vect
     if (falls) node.position += flying.displacement(state.t);
     node.velocity = falls ? flying.velocity_at(state.t) : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
+  for (const reduce::Moving& moving : pieces.moving) {
+    Node& node = nodes[moving.node];
+    node.position = pieces.nodes[moving.node].position + moving.curve.at(state.t);
+    node.velocity = moving.curve.rate(state.t);
+  }
   for (const reduce::Series& series : pieces.series) series.place(nodes);
+}
+
+// The energy at t [J] of springs between pinned nodes that move.
+double energy_of_driven_springs(const Pieces& pieces, double t) {
+  double energy = 0;
+  for (const reduce::DrivenSpring& spring : pieces.driven_springs) {
+    energy += spring.energy(pieces.nodes, pieces.curves, t);
+  }
+  return energy;
 }
 
 }  // namespace
 
-Model::Model(const Scene& scene, const Reductions& reductions)
-    : pieces_(std::make_unique<Pieces>(reduce::pieces_of(scene, reductions))) {
-  reduce::require_drawn_start(*this, *pieces_, scene);
+Model::Model(const Scene& scene, const Reductions& reductions) {
+  const std::optional<Scene> placed = with_supports_at_start(scene);
+  const Scene& start = placed ? *placed : scene;
+  pieces_ = std::make_unique<Pieces>(reduce::pieces_of(start, reductions));
+  reduce::require_drawn_start(*this, *pieces_, start);
 }
 
 Model::Model(std::shared_ptr<const System> system, State initial, int dimension)
@@ -126,7 +142,8 @@ double Model::kinetic(const State& state) const {
 }
 
 double Model::potential(const State& state) const {
-  double energy = pieces_->system->potential(state) + pieces_->static_energy;
+  double energy = pieces_->system->potential(state) + pieces_->static_energy +
+                  energy_of_driven_springs(*pieces_, state.t);
   for (const reduce::Flying& flying : pieces_->flying) {
     const Node& node = pieces_->nodes[flying.node];
     energy -= node.mass * flying.gravity.dot(node.position + flying.displacement(state.t));
@@ -138,7 +155,8 @@ double Model::potential(const State& state) const {
 }
 
 double Model::energy(const State& state) const {
-  double energy = total_energy(*pieces_->system, state) + state.dissipated + pieces_->static_energy;
+  double energy = total_energy(*pieces_->system, state) + state.work.taken() +
+                  pieces_->static_energy + energy_of_driven_springs(*pieces_, 0);
   for (const reduce::Flying& flying : pieces_->flying) {
     const Node& node = pieces_->nodes[flying.node];
     energy += node.mass * (0.5 * flying.velocity.squaredNorm() - flying.gravity.dot(node.position));
@@ -151,7 +169,7 @@ double Model::energy(const State& state) const {
 }
 
 double Model::dissipated(const State& state) const {
-  double energy = state.dissipated;
+  double energy = state.work.dissipated;
   for (const reduce::Flying& flying : pieces_->flying) {
     energy += pieces_->nodes[flying.node].mass * flying.dissipated(state.t);
   }
@@ -159,6 +177,11 @@ double Model::dissipated(const State& state) const {
     energy += part.fall().mass * part.fall().dissipated(state.t);
   }
   return energy;
+}
+
+double Model::driven(const State& state) const {
+  return state.work.driven + energy_of_driven_springs(*pieces_, state.t) -
+         energy_of_driven_springs(*pieces_, 0);
 }
 
 std::vector<std::size_t> Model::massless_nodes() const {

@@ -53,8 +53,8 @@ class Model {
   // The dimension of the nodes: 1, 2 or 3.
   int dimension() const;
 
-  // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest.
-  // Nodes that move in closed form are where they are at state.t.
+  // Positions [m] and velocities [m/s] of all nodes of the scene in `state`; pinned ones rest, or
+  // move by their curves. Nodes that move in closed form are where they are at state.t.
   std::vector<Node> expand(const State& state) const;
   // The same into existing memory: `nodes` is empty, or a former expansion of this model.
   void expand(const State& state, std::vector<Node>& nodes) const;
@@ -68,10 +68,12 @@ class Model {
   // Energies [J] of all nodes and springs of the scene; weights of pinned nodes do not count.
   double kinetic(const State& state) const;
   double potential(const State& state) const;
-  // The energy that dashpots and air have taken up to state.t [J]: state.dissipated, and that of
-  // motions in closed form.
+  // The energy that dashpots and air have taken up to state.t [J]: state.work.dissipated, and that
+  // of motions in closed form.
   double dissipated(const State& state) const;
-  // The sum of all three [J], which an exact motion keeps, without the rounding of terms that
+  // The energy that moving supports and changing loads have given up to state.t [J].
+  double driven(const State& state) const;
+  // T + V + dissipated - driven [J], which an exact motion keeps, without the rounding of terms that
   // cancel if something falls.
   double energy(const State& state) const;
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -68,6 +69,43 @@ void check_spring(const Entry& entry, const Spring& spring, const std::vector<No
                              spring.law.rest_length, i, j));
 }
 
+void check_curve(const Entry& entry, const TimeCurve& curve) {
+  for (const Eigen::Vector3d& c : curve.polynomial) entry.check_finite("polynomial", c);
+  for (const TimeCurve::Harmonic& harmonic : curve.harmonics) {
+    entry.check_finite("amplitude", harmonic.amplitude);
+    entry.check_not_negative("frequency", harmonic.frequency);
+    if (!std::isfinite(harmonic.phase))
+      entry.refuse("phase", fmt::format("{} is not allowed; allowed are finite numbers",
+                                        harmonic.phase));
+  }
+  for (const PiecewiseCubic& table : curve.tables) {
+    for (const Eigen::Vector3d& value : table.values()) entry.check_finite("values", value);
+    const std::vector<double>& times = table.times();
+    const bool is_ascending = std::ranges::all_of(times, [](double t) { return std::isfinite(t); }) &&
+                              std::ranges::is_sorted(times, std::less_equal<>());
+    if (times.size() < 2 || times.size() != table.values().size() || !is_ascending)
+      entry.refuse("times", "allowed are two or more finite times that ascend, each with a value");
+  }
+}
+
+void check_curves(const std::string& source, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.curves.size(); ++i)
+    check_curve({source, "curves", i}, scene.curves[i]);
+  const int count = static_cast<int>(scene.curves.size());
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    if (node.curve >= count)
+      Entry{source, "nodes", i}.refuse(
+          "curve", fmt::format("{} is not a curve; there are {}", node.curve, count));
+    if (node.curve >= 0 && !node.pinned && !(node.mass > 0))
+      Entry{source, "nodes", i}.refuse(
+          "curve", "a load that changes is not allowed on a node without mass");
+  }
+  if (scene.gravity_curve >= count)
+    Entry{source}.refuse("gravity_curve",
+                         fmt::format("{} is not a curve; there are {}", scene.gravity_curve, count));
+}
+
 // Refuses loads that nothing resists: they would move a node at once and without end.
 void check_loads(const std::string& source, const Scene& scene) {
   std::vector<bool> has_spring;
@@ -106,6 +144,22 @@ class Hash {
   void add(const Eigen::Vector3d& x) {
     for (const double component : x) add(component);
   }
+  void add(const TimeCurve& curve) {
+    for (const Eigen::Vector3d& c : curve.polynomial) add(c);
+    for (const TimeCurve::Harmonic& harmonic : curve.harmonics) {
+      add(harmonic.amplitude), add(harmonic.frequency), add(harmonic.phase);
+    }
+    for (const PiecewiseCubic& table : curve.tables) {
+      add(std::uint64_t(table.is_straight()));
+      for (const double t : table.times()) add(t);
+      for (const Eigen::Vector3d& value : table.values()) add(value);
+    }
+    // Functions are told apart by some of their values.
+    constexpr int values = 64;
+    for (const TimeCurve::Own& function : curve.own) {
+      for (int k = 0; k < values; ++k) add(function.value(0.137 * k));
+    }
+  }
   std::string digits() const { return fmt::format("{:016x}", hash_); }
 
  private:
@@ -129,6 +183,28 @@ bool is_damped(const Scene& scene) {
          });
 }
 
+bool is_driven(const Scene& scene) {
+  return scene.gravity_curve >= 0 ||
+         std::ranges::any_of(scene.nodes, [](const Node& node) { return node.curve >= 0; });
+}
+
+std::optional<Scene> with_supports_at_start(const Scene& scene) {
+  std::optional<Scene> placed;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    const Node& node = scene.nodes[i];
+    if (!node.pinned || node.curve < 0) continue;
+    const TimeCurve& curve = scene.curves[static_cast<std::size_t>(node.curve)];
+    const Eigen::Vector3d start = curve.at(0);
+    if (start.isZero(0)) continue;
+    if (!placed) placed = scene;
+    placed->nodes[i].position += start;
+    placed->nodes[i].curve = static_cast<int>(placed->curves.size());
+    placed->curves.push_back(curve);
+    placed->curves.back().shift(-start);
+  }
+  return placed;
+}
+
 void damp_springs(double damping_time, Scene& scene) {
   for (Spring& spring : scene.springs) {
     if (spring.law.damping == 0) spring.law.damping = damping_time * spring.law.stiffness;
@@ -149,6 +225,7 @@ void validate(const Scene& scene, const std::string& source) {
   for (std::size_t i = 0; i < scene.springs.size(); ++i)
     check_spring({source, "springs", i}, scene.springs[i], scene.nodes);
   check_loads(source, scene);
+  check_curves(source, scene);
   for (std::size_t i = 0; i < scene.faces.size(); ++i)
     check_face({source, "faces", i}, scene.faces[i], scene.nodes.size());
 }
@@ -181,6 +258,12 @@ std::string content_hash(const Scene& scene) {
   if (is_damped(scene)) {
     hash.add(scene.air_damping);
     for (const Spring& spring : scene.springs) hash.add(spring.law.damping);
+  }
+  // Likewise what changes with time.
+  if (is_driven(scene)) {
+    for (const TimeCurve& curve : scene.curves) hash.add(curve);
+    for (const Node& node : scene.nodes) hash.add(std::uint64_t(node.curve + 1));
+    hash.add(std::uint64_t(scene.gravity_curve + 1));
   }
   return hash.digits();
 }

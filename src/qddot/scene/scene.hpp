@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "qddot/model/spring.hpp"
+#include "qddot/model/time_curve.hpp"
 
 namespace qddot {
 
@@ -18,7 +19,9 @@ struct Node {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // [m/s]
   double mass = 0;                                     // [kg], 0 = massless; ignored where pinned
-  bool pinned = false;                                 // stays at its position for ever
+  bool pinned = false;  // stays at its position for ever, unless it has a curve
+  // Of Scene::curves: the displacement from `position` if it is pinned, else a load beside `load`.
+  int curve = -1;
   // A constant force beside the weight [N]; a pin carries it.
   Eigen::Vector3d load = Eigen::Vector3d::Zero();
 
@@ -55,7 +58,9 @@ struct Scene {
   // Springs with more stiffness [N/m] are stiff, for methods that treat their forces apart
   // (Split). If missing, none are named. Changes no motion.
   std::optional<double> stiff_above{};
-  double air_damping = 0;  // alpha [1/s]: air takes the force -alpha m v from each node
+  std::vector<TimeCurve> curves{};  // what changes with time, from t = 0 on
+  int gravity_curve = -1;           // of `curves`: an acceleration beside `gravity`
+  double air_damping = 0;           // alpha [1/s]: air takes the force -alpha m v from each node
   // Sentences that tell the user how the scene was read. Changes no motion.
   std::vector<std::string> warnings{};
 };
@@ -67,6 +72,13 @@ inline bool is_stiff(const SpringLaw& law, std::optional<double> stiff_above) {
 
 // Whether anything takes energy from the motion: a dashpot or the air.
 bool is_damped(const Scene& scene);
+
+// Whether anything depends on time: a support moves, or a load or gravity changes.
+bool is_driven(const Scene& scene);
+
+// The same scene with all moving supports where they are at t = 0, and displaced from there; nothing
+// if they are there already.
+std::optional<Scene> with_supports_at_start(const Scene& scene);
 
 // Sets the dashpot of each spring that has none to beta times its stiffness [N s/m]; beta in s.
 void damp_springs(double damping_time, Scene& scene);
@@ -83,6 +95,7 @@ std::vector<bool> nodes_on_springs(const Scene& scene);
 // Throws InvalidInput, in a sentence that starts with `source` and names node or spring and field,
 // unless
 //   every number is finite, and the dimension is 1, 2 or 3;
+//   every number of a curve is finite, frequencies are not negative, and times of tables ascend;
 //   masses, stiffnesses, rest lengths and dampings are not negative; `until` and `stiff_above` are
 //   above 0; each spring joins two different existing nodes, which are apart if its rest_length > 0
 //   (else it has no direction); a node with a load has mass, a pin, or a spring that pulls; each

@@ -43,7 +43,9 @@ Scene settled(const Scene& scene, const std::string& source) {
   }
   Scene result = scene;
   result.starts_at_equilibrium = false;
-  for (std::size_t i = 0; i < nodes.size(); ++i) result.nodes[i].position = nodes[i].position;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!nodes[i].pinned) result.nodes[i].position = nodes[i].position;
+  }
   return result;
 }
 

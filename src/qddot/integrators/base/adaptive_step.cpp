@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <boost/math/quadrature/gauss.hpp>
 #include <fmt/format.h>
 
 #include "qddot/model/machine_epsilon.hpp"
@@ -139,7 +140,18 @@ Outcome AdaptiveStep::show(double t, State& state) {
   const auto instants = std::span(list).first(used);
   if (!is_trusted(instants, from)) return step_aside(from, t, state);
   interpolate(instants, t, state);
+  state.work = from.state.work;
+  if (is_driven()) state.work.driven += work_between(instants, from.state.t, t);
   return Outcome::reached_end;
+}
+
+double AdaptiveStep::work_between(std::span<const Instant* const> instants, double from, double t) {
+  constexpr unsigned points = 10;
+  const auto power_at = [&](double s) {
+    interpolate(instants, s, between_);
+    return power({s, between_.q}).driven;
+  };
+  return boost::math::quadrature::gauss<double, points>::integrate(power_at, from, t);
 }
 
 // Without the instant t_k the polynomial changes by prod_{i != k} (t - t_i)^3 times one of second

@@ -71,6 +71,8 @@ class AdaptiveStep : public Stepper, protected Formula {
   bool can_show(double t);
   // Whether the polynomial through the instants follows the motion after `from`, one of them.
   bool is_trusted(std::span<const Instant* const> instants, const Instant& from);
+  // What driving gives from an instant to t [J], on the polynomial through the instants.
+  double work_between(std::span<const Instant* const> instants, double from, double t);
   // The state at t by separate steps from that instant.
   Outcome step_aside(const Instant& from, double t, State& state);
   // Sets the acceleration at the end of an attempt unless the attempt has done so.
@@ -98,6 +100,7 @@ class AdaptiveStep : public Stepper, protected Formula {
   std::vector<Instant> instants_;  // a ring buffer, with a place for the next attempt
   std::size_t newest_ = 0, count_ = 0;
   std::array<Instant, 2> aside_;
+  State between_;              // scratch
   double judged_ = -INFINITY;  // [s], the start of the last step that was judged
   bool judged_trusted_ = false;
   KinkSearch kinks_;

@@ -94,7 +94,7 @@ class FixedSteps final : public Stepper {
     if constexpr (!is_state) {
       formula_.show(x, may_evaluate, state);
       state.t = x.t;
-      state.dissipated = x.dissipated;
+      state.work = x.work;
     }
   }
   const State& shown(bool may_evaluate) {

@@ -27,8 +27,8 @@ namespace qddot {
 //   void resume(const Formula& run, const X& x, X& own)        continues from the x of `run`
 // A formula of a library that counts by itself has collect_counts(), as Stepper has.
 //
-// If the system has Damping, a step sets next.dissipated: x.dissipated and the energy that friction
-// takes in the step, by the formula's own quadrature of W' = v'Cv.
+// If the system has Damping or Driving, a step sets next.work: x.work and what friction takes and
+// driving gives in the step, by the formula's own quadrature of both powers.
 class Formula {
  public:
   using X = State;
@@ -48,9 +48,10 @@ class Formula {
   Seconds* clock() { return run_.counted().clock(); }
   double t_end() const { return run_.t_end(); }
 
-  // Whether the system has Damping. Then a step adds the energy that friction takes to
-  // `dissipated` of the state.
   bool is_damped() const { return system().damping() != nullptr; }
+  bool is_driven() const { return run_.counted().driving() != nullptr; }
+  // Whether it has either, so that a step sets next.work.
+  bool does_work() const { return is_damped() || is_driven(); }
 
   // The functions of CountedSystem.
   void force(const At& at, MutableVec f) { run_.counted().force(at, f); }
@@ -61,8 +62,9 @@ class Formula {
   const Vec& friction() const { return run_.counted().friction(); }
   // Moves that friction into a vector, in place of a copy.
   void take_friction(Vec& to) { to.swap(run_.counted().friction()); }
-  double power() const { return run_.counted().power(); }
-  double power(const At& at) { return run_.counted().power(at); }
+  Work power() const { return run_.counted().power(); }
+  Work power(const At& at) { return run_.counted().power(at); }
+  const Work& driving_power() const { return run_.counted().driving_power(); }
   void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {
     run_.counted().subtract_damping(part, at, rate, k);
   }
@@ -76,7 +78,7 @@ class Formula {
   bool must_stop() const { return run_.must_stop(); }
   void set_message(std::string message) { run_.set_message(std::move(message)); }
   Outcome check_solve(SolveOutcome solution) { return run_.check_solve(solution); }
-  Outcome indefinite_at(const Vec& q) { return run_.indefinite_at(q); }
+  Outcome indefinite_at(const At& at) { return run_.indefinite_at(at); }
 
   SystemRun& run_;
 };

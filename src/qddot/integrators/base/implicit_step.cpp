@@ -149,18 +149,18 @@ bool ImplicitStep::is_rounding(const Vec& q, double size, double least) const {
 // Whether f is linear at the place of the residual and at the place that the correction leads to.
 bool ImplicitStep::is_linear_along(const Vec& q) {
   if (!pieces_) return system().stiffness_is_constant();
-  if (knows_start() && !pieces_->is_linear_at(q)) return false;
+  if (knows_start() && !pieces_->is_linear_at({t_, q})) return false;
   x_ = q + u_;
-  if (!pieces_->is_linear_at(x_)) return false;
+  if (!pieces_->is_linear_at({t_, x_})) return false;
   x_ += p_;
-  return pieces_->is_linear_at(x_);
+  return pieces_->is_linear_at({t_, x_});
 }
 
 bool ImplicitStep::crosses_kink(const Vec& q) {
   if (!kinks_) return false;
-  kinks_->kink_lengths(q, length_);
+  kinks_->kink_lengths({t_, q}, length_);
   const auto has_other_signs = [&] {
-    kinks_->kink_lengths(x_, other_length_);
+    kinks_->kink_lengths({t_, x_}, other_length_);
     return (length_.array() * other_length_.array() <= 0).any();
   };
   x_ = q + u_;
@@ -185,12 +185,13 @@ void ImplicitStep::stage_force(const Vec& q, const Vec& u, Vec& f) {
 }
 
 std::optional<double> ImplicitStep::find_secant_friction() {
-  if (!q1_) return {};
+  if (!at1_) return {};
   const Stopwatch watch(clock(), &Seconds::force);
   secant_.resize(x_.size());
-  const BackwardRate rate{x_, *q1_, *q2_, rate_, a1_, a2_};
+  const BackwardRate rate{x_,  at1_->q, at2_->q, rate_,   a1_,
+                          a2_, t_,      at1_->t, at2_->t};
   const auto power = system().damping()->secant_friction(rate, velocity_, secant_);
-  if (!power) q1_ = nullptr;
+  if (!power) at1_ = nullptr;
   return power;
 }
 
@@ -200,10 +201,18 @@ At ImplicitStep::at_friction(const Vec& q) {
   return {t_, x_, velocity_};
 }
 
-double ImplicitStep::stage_power(const Vec& q) {
+Work ImplicitStep::stage_power(const Vec& q) {
+  if (!is_damped_) {
+    x_ = q + u_;
+    return power({t_, x_});
+  }
   const At at = at_friction(q);
   const std::optional<double> secant = find_secant_friction();
-  return secant ? *secant : power(at);
+  if (!secant) return power(at);
+  // What supports give to dashpots is by velocities: it differs by the formula's own error.
+  Work of_driving;
+  if (const Driving* driving = system().driving()) of_driving = driving->driving_power(at);
+  return {.dissipated = *secant, .driven = of_driving.driven};
 }
 
 void ImplicitStep::stage_stiffness(const Vec& q, const Vec& u, double compression_weight,
@@ -230,7 +239,7 @@ Outcome ImplicitStep::factorize_softened(const Vec& q, double s) {
     return matrix_.factorize_positive(1, s, k_);
   });
   if (!is_finite) return Outcome::not_finite;
-  if (!is_positive) return indefinite_at(x_);
+  if (!is_positive) return indefinite_at({t_, x_});
   factorized_s_ = s;
   factorized_rate_ = rate_;
   return Outcome::reached_end;
@@ -287,7 +296,7 @@ double ImplicitStep::objective(const Vec& q, double s) {
   if (!is_damped_) return g;
   const At at = at_friction(q);
   const std::optional<double> secant = find_secant_friction();
-  return g + s / (2 * rate_) * (secant ? *secant : power({t_, frozen_, at.v}));
+  return g + s / (2 * rate_) * (secant ? *secant : power({t_, frozen_, at.v}).dissipated);
 }
 
 }  // namespace qddot

@@ -54,14 +54,16 @@ class ImplicitStep : public Formula {
     w_ = w;
   }
   // Has the next stages take dashpots as springs within the step: by the rates of their lengths
-  // a0 l(q_n + u) + a1 l(q1) + a2 l(q2), with a0 = r of set_velocity(), if the system knows
-  // lengths. Then friction has a potential, and does not resist a turn of the whole. q1, q2 (n)
-  // must outlive the stages.
-  void set_lengths(double a1, const Vec& q1, double a2, const Vec& q2) {
-    q1_ = &q1, q2_ = &q2, a1_ = a1, a2_ = a2;
+  // a0 l(q_n + u) + a1 l_1 + a2 l_2, with a0 = r of set_velocity(), if the system knows lengths.
+  // Then friction has a potential, and does not resist a turn of the whole. The states of l_1 and
+  // l_2 must outlive the stages.
+  void set_lengths(double a1, const State& at1, double a2, const State& at2) {
+    at1_ = &at1, at2_ = &at2, a1_ = a1, a2_ = a2;
   }
-  // v'Cv [W] at the last stage.
-  double stage_power(const Vec& q);
+  // The power [W] of friction and driving at the last stage.
+  Work stage_power(const Vec& q);
+  // The time of the stage [s].
+  double stage_time() const { return t_; }
 
   // a = M^-1 f [m/s^2]; for methods that begin with it.
   void acceleration(const At& at, Vec& a);
@@ -114,7 +116,7 @@ class ImplicitStep : public Formula {
   const bool is_damped_;
   double rate_ = 0, factorized_rate_ = 0;    // r, and that of the present factors
   Vec w_, velocity_;                         // n if the system has Damping
-  const Vec *q1_ = nullptr, *q2_ = nullptr;  // see set_lengths
+  const State *at1_ = nullptr, *at2_ = nullptr;  // see set_lengths
   double a1_ = 0, a2_ = 0;
   Vec secant_;
   Vec frozen_;               // where C of g is taken

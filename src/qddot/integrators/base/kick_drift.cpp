@@ -29,9 +29,11 @@ void KickDrift::begin(const State& state, X& x) {
   q_.restart();
   v_.restart();
   if (kicks_first_) force({state.t, state.q}, x.f);
+  x.driving = driving_power();
 }
 
 Outcome KickDrift::step(const X& now, double h, X& next) {
+  next.work = now.work;
   if (options().compensated || is_damped()) {
     step_compensated(now, h, next);
   } else if (kicks_first_) {
@@ -46,16 +48,19 @@ void KickDrift::step_from_kick(const X& now, double h, X& next) {
   const auto& [order, kicks, drifts] = splitting_;
   const X* from = &now;
   double t = now.t, late = now.late;
+  if (is_driven()) next.work += kicks[0] * h * now.driving;
   for (std::size_t i = 0; i < drifts.size(); ++i) {
     KicksAndDrift work({from->q, from->v, from->f, system().mass()},
                        {late, kicks[i] * h, drifts[i] * h}, next.q, next.v);
     if (i + 1 == drifts.size()) work.see_speed(kicks.back() * h, next.f);
     t += drifts[i] * h;
     next.squared_speed = force_beside({t, next.q}, next.f, work);
+    if (is_driven()) next.work += kicks[i + 1] * h * driving_power();
     from = &next;
     late = 0;
   }
   next.late = kicks.back() * h;
+  next.driving = driving_power();
 }
 
 void KickDrift::step_from_drift(const X& now, double h, X& next) {
@@ -66,6 +71,7 @@ void KickDrift::step_from_drift(const X& now, double h, X& next) {
   for (std::size_t i = 0; i < kicks.size(); ++i) {
     t += drifts[i] * h;
     force({t, next.q}, next.f);
+    if (is_driven()) next.work += kicks[i] * h * driving_power();
     kick_and_drift({next.q, *v, next.f, system().mass()}, 0, kicks[i] * h, drifts[i + 1] * h,
                    next.q, next.v);
     v = &next.v;
@@ -77,11 +83,12 @@ void KickDrift::step_compensated(const X& now, double h, X& next) {
   next.q = now.q;
   next.v = now.v;
   if (kicks_first_) next.f = now.f;
+  next.driving = now.driving;
   const auto kick = [&](double size) {
+    if (is_driven()) next.work += size * h * next.driving;
     v_.add_quotient(next.v, size * h, next.f, system().mass(), next.v);
   };
   next.late = 0;
-  next.dissipated = now.dissipated;
   const auto drift = [&](double size) { this->drift(size * h, next); };
   double t = now.t;
   for (std::size_t i = 0; i < std::min(kicks.size(), drifts.size()); ++i) {
@@ -89,6 +96,7 @@ void KickDrift::step_compensated(const X& now, double h, X& next) {
     drift(drifts[i]);
     t += drifts[i] * h;
     force({t, next.q}, next.f);
+    next.driving = driving_power();
     if (!kicks_first_) kick(kicks[i]);
   }
   if (kicks_first_) {
@@ -101,7 +109,7 @@ void KickDrift::step_compensated(const X& now, double h, X& next) {
 void KickDrift::drift(double h, X& next) {
   if (air_damping_ == 0) return q_.add_scaled(next.q, h, next.v, next.q);
   q_.add_scaled(next.q, -std::expm1(-air_damping_ * h) / air_damping_, next.v, next.q);
-  next.dissipated -= std::expm1(-2 * air_damping_ * h) * system().kinetic(next.v);
+  next.work.dissipated -= std::expm1(-2 * air_damping_ * h) * system().kinetic(next.v);
   next.v *= std::exp(-air_damping_ * h);
 }
 

@@ -28,12 +28,17 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 //   q += (1 - e^(-alpha x h))/alpha v,   v *= e^(-alpha x h)
 // It is that of a part of the motion as before, so orders stay as they are, and drifts back in time
 // gain what others lose. The energy that it takes is that of the drift.
+//
+// Driving moves with the drifts: t is a coordinate of H = T + V(q, t) + p, p' = -dV/dt, and a kick
+// of y h changes p. So each kick gives the work y h dV/dt, and E less all work has an error that
+// stays bounded.
 class KickDrift final : public Formula {
  public:
   struct X : State {
     Vec f;                     // at q, if kicks are first
     double late = 0;           // the kick that v lacks [s]
     double squared_speed = 0;  // |v|^2 with that kick, if it is not 0
+    Work driving;              // its power where f is
   };
 
   KickDrift(SystemRun& run, const Splitting& splitting);

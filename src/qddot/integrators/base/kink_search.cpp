@@ -73,10 +73,16 @@ bool is_positive(Bernstein b, int left = divisions) {
   return is_positive(first, left - 1) && is_positive(b, left - 1);
 }
 
+// The part of a step over which differences in time are taken.
+constexpr double small_part = 0.01;
+
 }  // namespace
 
-KinkSearch::KinkSearch(const System& system) : kinks_(system.kinks()) {
+KinkSearch::KinkSearch(const System& system)
+    : kinks_(system.kinks()), moves_by_itself_(!system.is_autonomous()) {
   const Index n = kinks_ ? kinks_->kink_count() : 0;
+  ahead_.resize(n);
+  behind_.resize(n);
   for (int end : {0, 1}) {
     length_[end].resize(n);
     rate_[end].resize(n);
@@ -88,14 +94,22 @@ void KinkSearch::look(const Instant& a, const Instant& b) {
   const Instant* const ends[] = {&a, &b};
   for (int end : {0, 1}) {
     const State& state = ends[end]->state;
-    kinks_->kink_lengths(state.q, length_[end]);
-    // Lengths are affine.
+    const double t = state.t;
+    kinks_->kink_lengths({t, state.q}, length_[end]);
+    // Lengths are affine in q.
     place_ = state.q + state.v;
-    kinks_->kink_lengths(place_, rate_[end]);
+    kinks_->kink_lengths({t, place_}, rate_[end]);
     rate_[end] -= length_[end];
     place_ = state.q + ends[end]->a;
-    kinks_->kink_lengths(place_, acceleration_[end]);
+    kinks_->kink_lengths({t, place_}, acceleration_[end]);
     acceleration_[end] -= length_[end];
+    if (!moves_by_itself_) continue;
+    // Points that move, by central differences.
+    const double e = small_part * (b.state.t - a.state.t);
+    kinks_->kink_lengths({t + e, state.q}, ahead_);
+    kinks_->kink_lengths({t - e, state.q}, behind_);
+    rate_[end] += (ahead_ - behind_) / (2 * e);
+    acceleration_[end] += (ahead_ - 2 * length_[end] + behind_) / (e * e);
   }
 }
 

@@ -48,7 +48,8 @@ class KinkSearch {
   void look(const Instant& a, const Instant& b);
 
   const Kinks* kinks_;
-  Vec length_[2], rate_[2], acceleration_[2], place_;
+  bool moves_by_itself_;  // whether lengths depend on time beside q
+  Vec length_[2], rate_[2], acceleration_[2], place_, ahead_, behind_;
 };
 
 }  // namespace qddot

@@ -39,7 +39,7 @@ Outcome LocalGlobal::step(const State& now, double h, State& next) {
     if (!is_finite_) return Outcome::not_finite;
   }
   next.q = now.q + h * next.v;
-  if (is_damped()) next.dissipated = now.dissipated + h * find_friction(next.v);
+  if (does_work()) next.work = now.work + h * power_at(next.v);
   return Outcome::reached_end;
 }
 
@@ -55,11 +55,20 @@ void LocalGlobal::gradient(const Vec& v, Vec& r) {
 double LocalGlobal::find_friction(const Vec& v) {
   q_ = now_->q + h_ * v;
   friction_.resize(q_.size());
-  const BackwardRate rate{q_, now_->q, now_->q, 1 / h_, -1 / h_, 0};
+  const BackwardRate rate{q_, now_->q, now_->q, 1 / h_, -1 / h_, 0, t_, now_->t, now_->t};
   if (const auto taken = system().damping()->secant_friction(rate, v, friction_)) return *taken;
-  const double taken = power({t_, now_->q, v});
+  const double taken = power({t_, now_->q, v}).dissipated;
   friction_ = friction();
   return taken;
+}
+
+Work LocalGlobal::power_at(const Vec& v) {
+  Work power;
+  if (is_damped()) power.dissipated = find_friction(v);
+  q_ = now_->q + h_ * v;
+  if (const Driving* driving = system().driving())
+    power.driven = driving->driving_power({t_, q_, v}).driven;
+  return power;
 }
 
 void LocalGlobal::direction(const Vec& r, Vec& p) {

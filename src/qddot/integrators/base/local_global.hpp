@@ -46,6 +46,8 @@ class LocalGlobal : public Formula {
   double objective(const Vec& v);  // g [J]
   // Sets friction_ where the step ends with v, and returns the power that it takes [W].
   double find_friction(const Vec& v);
+  // The power [W] of friction and driving at the end of a step with the velocity v.
+  Work power_at(const Vec& v);
   // Moves v by the first of -p, -p/2, -p/4, ... that lowers g by Armijo's rule, or not at all if
   // rounding hides it. `g` is that of v, before and after.
   void search(Vec& v, const Vec& p, double slope, double& g);

@@ -35,9 +35,14 @@ double Nystrom::longest_step(const Instant& now) {
 
 Outcome Nystrom::attempt(const Instant& now, double h, Instant& next, Vec& error_q, Vec& error_v) {
   const Vec &q = now.state.q, &v = now.state.v;
+  Work work;
+  auto weight = pair_.b_prime.begin();
+  if (is_driven()) work = *weight++ * power({now.state.t, q});
   stages_.compute(q, v, now.a, h, [&](double t, const Vec& stage, MutableVec k) {
     acceleration({now.state.t + t, stage}, k);
+    if (is_driven()) work += *weight++ * driving_power();
   });
+  next.state.work = now.state.work + h * work;
   const Eigen::MatrixXd& k = stages_.k();
   if (is_first_same_as_last_) next.a = k.rightCols<1>();
   add_combination(q, h, v, h * h, k, pair_.b, next.state.q);

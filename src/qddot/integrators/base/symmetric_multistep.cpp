@@ -32,6 +32,7 @@ SymmetricMultistep::SymmetricMultistep(SystemRun& run, const SymmetricFormula& f
       symmetric_start_(symmetric_start(formula)),
       stages_(formula.single_step(), system().size()),
       first_(formula.steps - 1, system().size()),
+      integrals_(step_integrals(formula.steps - 1)),
       u_(2 * static_cast<std::size_t>(formula.steps) - 3, Vec(system().size())),
       f_(system().size()),
       a_(system().size()) {
@@ -63,10 +64,15 @@ void SymmetricMultistep::single_step(X& x, double h, X& next) {
   show(x, true, state_);
   evaluate(x);
   divide(x.f, mass, a_);
+  Work work;
+  auto weight = pair.b_prime.begin();
+  if (is_driven()) work = *weight++ * power({x.t, state_.q});
   stages_.compute(state_.q, state_.v, a_, h, [&](double t, const Vec& stage, MutableVec k) {
     force({x.t + t, stage}, f_);
     divide(f_, mass, k);
+    if (is_driven()) work += *weight++ * driving_power();
   });
+  next.work = x.work + h * work;
   const Eigen::MatrixXd& k = stages_.k();
   add_combination(state_.q, h, state_.v, h * h, k, pair.b, next.q);
   add_combination(state_.v, h, k, pair.b_prime, next.v);
@@ -80,6 +86,23 @@ void SymmetricMultistep::begin_from(X& x) {
     force({x.t + t, q}, f_);
     divide(f_, mass, g);
   });
+  if (!is_driven()) return;
+  powers_ = {power({x.t, x.q})};
+  state_.q = x.q;
+  for (Index j = 0; j < first_.steps(); ++j) {
+    state_.q += first_.d(j);
+    powers_.push_back(power({x.t + static_cast<double>(j + 1) * h_, state_.q}));
+  }
+}
+
+// What driving gives in step j of the last `steps` [J]. It is exact for polynomials through the
+// powers at all their ends, so that work has the order of the positions.
+Work SymmetricMultistep::work_of_step(Index j) const {
+  Work work;
+  for (Index l = 0; l < std::ssize(powers_); ++l) {
+    work += (h_ * integrals_.once(j, l)) * powers_[static_cast<std::size_t>(l)];
+  }
+  return work;
 }
 
 void SymmetricMultistep::begin_history(X& x) {
@@ -146,6 +169,8 @@ Outcome SymmetricMultistep::step(X& x, double h, X& next) {
     next.q = x.q + first_.d(x.begun);
     next.v = first_.v(x.begun + 1);
     next.begun = x.begun + 1;
+    next.work = x.work;
+    if (is_driven()) next.work += work_of_step(x.begun);
     next.has_velocity = true;
     next.has_history = false;
     if (next.begun == first_.steps()) begin_history(next);
@@ -158,6 +183,12 @@ Outcome SymmetricMultistep::step(X& x, double h, X& next) {
     next.newest = (x.newest + std::ssize(u_) - 1) % std::ssize(u_);
     next.has_history = true;
     next.has_velocity = false;
+    next.work = x.work;
+    if (is_driven()) {
+      powers_.erase(powers_.begin());
+      powers_.push_back(power({next.t, next.q}));
+      next.work += work_of_step(first_.steps() - 1);
+    }
   }
   return Outcome::reached_end;
 }

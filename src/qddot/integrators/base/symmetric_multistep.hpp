@@ -45,6 +45,7 @@ class SymmetricMultistep final : public Formula {
   // Begins the history after them.
   void begin_history(X& x);
   void evaluate(X& x);
+  Work work_of_step(Index j) const;
   // u of so many steps before x: 1 is that of the last step.
   Vec& u(const X& x, std::ptrdiff_t ago) {
     return u_[static_cast<std::size_t>((x.newest + ago) % std::ssize(u_))];
@@ -58,6 +59,8 @@ class SymmetricMultistep final : public Formula {
   Vec h2_by_mass_;
   double h_ = 0;  // of all steps but the last [s]
   DeferredCorrection first_;
+  StepIntegrals integrals_;
+  std::vector<Work> powers_;  // of driving at the ends of the last steps, if anything is driven
   std::vector<Vec> u_;  // a ring buffer, with a place for the next
   Vec f_, a_;
   State state_;

@@ -115,7 +115,7 @@ Reference make_reference(const Model& scene, double until, double seconds, const
                    .made_by = "modal, exact"};
     if (scene.system().damping()) {
       // Damping has taken all energy that the exact motion has lost.
-      modal.end.dissipated =
+      modal.end.work.dissipated =
           total_energy(scene.system(), scene.initial()) - total_energy(scene.system(), modal.end);
     }
     reference = joined(scene, modal, finest, effect);

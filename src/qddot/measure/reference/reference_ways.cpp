@@ -131,7 +131,7 @@ std::optional<Solution> fehlberg(const Model& scene, double until, double tolera
                      has_scales ? scales.displacement_of(scales.parts[i]) : scales.displacement,
                  speed = has_scales ? scales.speed_of(scales.parts[i]) : scales.speed;
     if (!fehlberg_step_by_step(part, q, v, until, tolerance, length > 0 ? length : 1,
-                               speed > 0 ? speed : 1, solution.end.dissipated, deadline)) {
+                               speed > 0 ? speed : 1, solution.end.work.dissipated, deadline)) {
       stop_if_interrupted();
       return {};
     }

@@ -100,7 +100,7 @@ std::string loss_warning(const Method& method, const Options& options, const Mod
       "the method took {:.3g} J, {:.2g} % of the energy that this motion can turn into speed",
       summary.energy_lost, 100 * summary.energy_loss);
   if (scene.system().damping())
-    words += fmt::format(", beside {:.3g} J that damping took", summary.dissipated);
+    words += fmt::format(", beside {:.3g} J that damping took", summary.work.dissipated);
   if (!has_linear_step(method)) {
     return words + (method.knob == Knob::rtol ? ": lower --rtol" : ": lower --step-size");
   }

@@ -17,8 +17,9 @@ constexpr int parts_in_cache = 24, parts_at_once = 4;
 
 template <int D>
 SpringsByNode<D>::SpringsByNode(const Network& network, const CompactLinks& links,
-                                const Layout<D>& layout, const Vec& weight)
-    : weight_(weight) {
+                                const Layout<D>& layout, const Vec& weight,
+                                const DrivenNetwork<D>& driven)
+    : weight_(weight), driven_(driven) {
   const int nodes = static_cast<int>(layout.nodes());
   // If a node has fewer unknowns, slices begin at other axes than the first.
   const bool are_full = nodes > 0 && weight.size() == D * Index{nodes};
@@ -28,13 +29,16 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const CompactLinks& link
       slice_weight_[i] = weight[static_cast<Index>(i % D)];
     }
   }
-  std::map<std::array<double, D>, int> points;
+  std::map<std::pair<std::array<double, D>, int>, int> points;
   std::vector<int> anchored_to;  // the point of each anchor
   for (const auto& anchor : network.anchors) {
     std::array<double, D> x;
     std::copy_n(anchor.point.data(), D, x.begin());
-    const auto [point, is_new] = points.try_emplace(x, std::ssize(points_));
-    if (is_new) points_.push_back(x);
+    const auto [point, is_new] = points.try_emplace({x, anchor.curve}, std::ssize(points_));
+    if (is_new) {
+      points_.push_back(x);
+      point_curves_.push_back(anchor.curve);
+    }
     anchored_to.push_back(nodes + point->second);
   }
   // Images are ordered by mirror, then by source, so that the image of a grid is a grid.
@@ -160,8 +164,10 @@ bool SpringsByNode<D>::uses_threads() const {
 
 template <int D>
 template <class Damping>
-double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce* beside,
+double SpringsByNode<D>::sum_forces(const At& at, MutableVec f, BesideForce* beside,
                                     const Damping& damped) const {
+  const VecView& q = at.q;
+  const Offset weight = offset(at.t);
   const SpringTable springs = table();
   const Positions positions = memory();
   [[maybe_unused]] DashpotTable dashpots{};
@@ -171,13 +177,13 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
     dashpots = dashpot_table();
     velocities = memory(1);
     none = no_offset(damped.friction);
-    place_resting_points(velocities);
+    place_velocities_of_points(velocities, at.t);
   }
   const int count = parts_.count();
   thread_local Vec of_parts;
   if (of_parts.size() < count) of_parts.resize(count);
   double* const sums = of_parts.data();
-  place_points(positions);
+  place_points(positions, at.t);
 
   const auto place = [&](int from, int end) {
     if (from == end) return;
@@ -186,7 +192,7 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
                     parts_.parts[end - 1].end);
     place_images(positions, from, end);
     if constexpr (Damping::exists) {
-      kernels_->place(springs, damped.v.data(), velocities, parts_.parts[from].begin,
+      kernels_->place(springs, at.v.data(), velocities, parts_.parts[from].begin,
                       parts_.parts[end - 1].end);
       place_images(velocities, from, end);
     }
@@ -205,10 +211,10 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
       const int begin = parts_.parts[first].begin, slices_end = parts_.parts[last].end;
       if constexpr (Damping::exists) {
         kernels_->damped_force(springs, dashpots, positions, velocities, memory.data(),
-                               first > from, met_no_length, offset(), f.data(), none,
+                               first > from, met_no_length, weight, f.data(), none,
                                damped.friction.data(), begin, slices_end);
       } else {
-        kernels_->force(springs, positions, memory.data(), first > from, offset(), f.data(), begin,
+        kernels_->force(springs, positions, memory.data(), first > from, weight, f.data(), begin,
                         slices_end);
       }
       for (int p = first; beside && p <= last; ++p) {
@@ -240,17 +246,28 @@ double SpringsByNode<D>::sum_forces(const VecView& q, MutableVec f, BesideForce*
 }
 
 template <int D>
-double SpringsByNode<D>::half_sum_energies(const VecView& q) const {
+double SpringsByNode<D>::half_sum_energies(const At& at) const {
   double sums[slice_rows] = {};
-  kernels_->energy(table(), placed(q), sums, 0, slices_.count());
+  kernels_->energy(table(), placed(at), sums, 0, slices_.count());
   double total = 0;
   for (const double sum : sums) total += sum;
   return total / 2;
 }
 
 template <int D>
-void SpringsByNode<D>::sum_mean_forces(const VecView& a, const VecView& b, MutableVec f) const {
-  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(), f.data(), 0, slices_.count());
+void SpringsByNode<D>::sum_mean_forces(const At& a, const At& b, MutableVec f) const {
+  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(a.t), f.data(), 0,
+                       slices_.count());
+}
+
+template <int D>
+Offset SpringsByNode<D>::offset(double t) const {
+  if (!driven_.has_loads())
+    return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr};
+  thread_local Vec weight;
+  weight = weight_;
+  driven_.add_loads(t, weight);
+  return {weight.data(), nullptr};
 }
 
 template <int D>
@@ -267,23 +284,24 @@ Offset SpringsByNode<D>::no_offset(MutableVec numbers) const {
 }
 
 template <int D>
-void SpringsByNode<D>::multiply_stiffness(const VecView& q, const VecView& x, MutableVec y) const {
+void SpringsByNode<D>::multiply_stiffness(const At& at, const VecView& x, MutableVec y) const {
   const Positions moved = placed_beside(x);
-  kernels_->stiffness_product(table(), placed(q, 0), moved, no_offset(y), y.data(), 0,
+  kernels_->stiffness_product(table(), placed(at, 0), moved, no_offset(y), y.data(), 0,
                               slices_.count());
 }
 
 template <int D>
-void SpringsByNode<D>::sum_friction(const VecView& q, const VecView& v, MutableVec friction) const {
-  const Positions velocities = placed_beside(v);
-  kernels_->friction(table(), dashpot_table(), placed(q, 0), velocities, no_offset(friction),
+void SpringsByNode<D>::sum_friction(const At& at, MutableVec friction) const {
+  const Positions velocities = placed_beside(at.v);
+  place_velocities_of_points(velocities, at.t);
+  kernels_->friction(table(), dashpot_table(), placed(at, 0), velocities, no_offset(friction),
                      friction.data(), 0, slices_.count());
 }
 
 template <int D>
-double SpringsByNode<D>::sum_damped_forces(const VecView& q, const VecView& v, MutableVec f,
-                                           MutableVec friction, BesideForce* beside) const {
-  return sum_forces(q, f, beside, Damped{v, friction});
+double SpringsByNode<D>::sum_damped_forces(const At& at, MutableVec f, MutableVec friction,
+                                           BesideForce* beside) const {
+  return sum_forces(at, f, beside, Damped{friction});
 }
 
 template <int D>
@@ -300,16 +318,22 @@ void SpringsByNode<D>::place_resting_points(const Positions& velocities) const {
 }
 
 template <int D>
-void SpringsByNode<D>::sum_stiffness_rows(const VecView& q, MutableVec sums) const {
-  kernels_->stiffness_row_sums(table(), placed(q), no_offset(sums), sums.data(), 0,
+void SpringsByNode<D>::place_velocities_of_points(const Positions& velocities, double t) const {
+  place_resting_points(velocities);
+  move_points(velocities, driven_.rates(t));
+}
+
+template <int D>
+void SpringsByNode<D>::sum_stiffness_rows(const At& at, MutableVec sums) const {
+  kernels_->stiffness_row_sums(table(), placed(at), no_offset(sums), sums.data(), 0,
                                slices_.count());
 }
 
 template <int D>
-Positions SpringsByNode<D>::placed(const VecView& q, int which) const {
+Positions SpringsByNode<D>::placed(const At& at, int which) const {
   const Positions positions = memory(which);
-  place_points(positions);
-  kernels_->place(table(), q.data(), positions, 0, slices_.count());
+  place_points(positions, at.t);
+  kernels_->place(table(), at.q.data(), positions, 0, slices_.count());
   place_images(positions, 0, parts_.count());
   return positions;
 }
@@ -325,9 +349,24 @@ Positions SpringsByNode<D>::memory(int which) const {
 }
 
 template <int D>
-void SpringsByNode<D>::place_points(const Positions& positions) const {
+void SpringsByNode<D>::place_points(const Positions& positions, double t) const {
   int place = slices_.rows();
   for (const auto& point : points_) place_extra(positions, place++, point);
+  move_points(positions, driven_.values(t));
+}
+
+template <int D>
+void SpringsByNode<D>::move_points(const Positions& positions,
+                                   const std::vector<Eigen::Matrix<double, D, 1>>& by) const {
+  for (std::size_t i = 0; i < point_curves_.size() && !by.empty(); ++i) {
+    if (point_curves_[i] < 0) continue;
+    const int place = slices_.rows() + static_cast<int>(i);
+    std::array<double, D> x;
+    for (int a = 0; a < D; ++a) {
+      x[a] = positions.coordinates[a * positions.stride + place] + by[point_curves_[i]][a];
+    }
+    place_extra(positions, place, x);
+  }
 }
 
 template <int D>

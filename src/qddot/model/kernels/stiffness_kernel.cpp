@@ -118,27 +118,27 @@ void StiffnessKernel<D>::place_slots(const Layout<D>& layout, const SpringsByNod
 }
 
 template <int D>
-void StiffnessKernel<D>::write(const SpringsByNode<D>& springs, const VecView& q, TensionPart part,
+void StiffnessKernel<D>::write(const SpringsByNode<D>& springs, const At& at, TensionPart part,
                                SymmetricMatrix& k) const {
   const SpringTable table = springs.table();
   const StiffnessTable own{slot_targets_.data(), targets_.data(), columns_.data()};
   double* values = k.valuePtr();
-  springs.for_slices(q, [&](const Positions& positions, int from, int end) {
+  springs.for_slices(at, [&](const Positions& positions, int from, int end) {
     springs.kernels().stiffness(table, positions, own, part, values, from, end);
   });
   for (const int i : zeros_) values[i] = 0;
 }
 
 template <int D>
-void StiffnessKernel<D>::stiffness(const SpringsByNode<D>& springs, const VecView& q,
+void StiffnessKernel<D>::stiffness(const SpringsByNode<D>& springs, const At& at,
                                    double compression, SymmetricMatrix& k) const {
-  write(springs, q, {.is_material = false, .compression = compression}, k);
+  write(springs, at, {.is_material = false, .compression = compression}, k);
 }
 
 template <int D>
-void StiffnessKernel<D>::material_stiffness(const SpringsByNode<D>& springs, const VecView& q,
+void StiffnessKernel<D>::material_stiffness(const SpringsByNode<D>& springs, const At& at,
                                             SymmetricMatrix& k) const {
-  write(springs, q, {.is_material = true, .compression = 1}, k);
+  write(springs, at, {.is_material = true, .compression = 1}, k);
 }
 
 template class StiffnessKernel<1>;

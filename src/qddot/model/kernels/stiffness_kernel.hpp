@@ -22,11 +22,11 @@ class StiffnessKernel {
   // links, and of links at a node with a coordinate that is no unknown, stay zero too.
   const std::vector<int>& links_left_out() const { return links_left_out_; }
 
-  // Writes K with B = spring_stiffness(law, d, compression). q: n; k: of the pattern.
-  void stiffness(const SpringsByNode<D>& springs, const VecView& q, double compression,
+  // Writes K with B = spring_stiffness(law, d, compression). k: of the pattern.
+  void stiffness(const SpringsByNode<D>& springs, const At& at, double compression,
                  SymmetricMatrix& k) const;
   // The same with B = spring_material_stiffness(law, d).
-  void material_stiffness(const SpringsByNode<D>& springs, const VecView& q,
+  void material_stiffness(const SpringsByNode<D>& springs, const At& at,
                           SymmetricMatrix& k) const;
 
  private:
@@ -36,7 +36,7 @@ class StiffnessKernel {
                      Written& written);
   void place_slots(const Layout<D>& layout, const SpringsByNode<D>& springs,
                    const SymmetricMatrix& pattern, const std::vector<int>& links, Written& written);
-  void write(const SpringsByNode<D>& springs, const VecView& q, TensionPart part,
+  void write(const SpringsByNode<D>& springs, const At& at, TensionPart part,
              SymmetricMatrix& k) const;
 
   std::vector<int> links_left_out_;

@@ -76,10 +76,10 @@ PartSprings renumbered(const DrawnPart& drawn, std::vector<int> chosen,
 }  // namespace
 
 DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
-                     const std::vector<Spring>& springs, const Eigen::Vector3d& gravity) {
+                     const std::vector<Spring>& springs, const Scene& scene) {
   DrawnPart drawn{.nodes = {members.nodes.begin(), members.nodes.end()},
                   .free = members.nodes.size(),
-                  .gravity = gravity};
+                  .gravity = scene.gravity};
   const auto ends_of = [&](int e) { return springs[static_cast<std::size_t>(e)].nodes; };
   std::vector<std::size_t> pins;
   for (const int e : members.springs) {
@@ -114,7 +114,16 @@ DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
   if (is_loaded) {
     for (const std::size_t i : drawn.nodes) drawn.load.push_back(nodes[i].acting_load());
   }
-  if (total_mass == 0) drawn.gravity.setZero();
+  if (total_mass == 0) {
+    drawn.gravity.setZero();
+  } else {
+    drawn.gravity_curve = scene.gravity_curve;
+  }
+  const auto has_curve = [&](std::size_t i) { return nodes[i].curve >= 0; };
+  if (drawn.gravity_curve >= 0 || std::ranges::any_of(drawn.nodes, has_curve)) {
+    drawn.curves = scene.curves;
+    for (const std::size_t i : drawn.nodes) drawn.curve_of.push_back(nodes[i].curve);
+  }
   drawn.gravity_noise = rounding * drawn.gravity.norm();
   drawn.origin = local_origin(drawn.x);
   for (Eigen::Vector3d& x : drawn.x) x -= drawn.origin;

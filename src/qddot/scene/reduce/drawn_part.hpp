@@ -33,7 +33,21 @@ struct DrawnPart {
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
   double air_damping = 0;       // alpha [1/s], set by the caller
   bool offers_split = false;    // whether its system is to offer Split
+  // Of the scene, where anything in the part depends on time: its curves, and that of each node and
+  // of gravity, or -1; see Scene.
+  std::vector<TimeCurve> curves{};
+  std::vector<int> curve_of{};
+  int gravity_curve = -1;
 
+  bool is_driven() const { return !curves.empty(); }
+  // The curve of a node, or nullptr.
+  const TimeCurve* curve(std::size_t i) const {
+    return is_driven() && curve_of[i] >= 0 ? &curves[static_cast<std::size_t>(curve_of[i])]
+                                           : nullptr;
+  }
+  const TimeCurve* curve_of_gravity() const {
+    return gravity_curve >= 0 ? &curves[static_cast<std::size_t>(gravity_curve)] : nullptr;
+  }
   // Whether a load is not zero.
   bool is_loaded() const { return !load.empty(); }
   Eigen::Vector3d load_of(std::size_t i) const { return of(load, i); }
@@ -46,9 +60,9 @@ struct DrawnPart {
 };
 
 // Makes the part of these members, whose numbers are those of the scene's nodes and springs. It
-// refers to `springs`.
+// refers to `springs`. Gravity and what changes with time are those of the scene.
 DrawnPart drawn_part(PartMembers members, const std::vector<Node>& nodes,
-                     const std::vector<Spring>& springs, const Eigen::Vector3d& gravity);
+                     const std::vector<Spring>& springs, const Scene& scene);
 
 // The springs of the part once more, found among all by its nodes.
 PartSprings drawn_springs(const DrawnPart& drawn, const std::vector<Node>& nodes,

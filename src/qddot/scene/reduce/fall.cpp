@@ -24,7 +24,7 @@ bool has_loose_node(const DrawnPart& drawn) {
 }  // namespace
 
 void let_fall(DrawnPart& drawn) {
-  if (drawn.free < drawn.nodes.size() || has_loose_node(drawn)) return;
+  if (drawn.free < drawn.nodes.size() || drawn.is_driven() || has_loose_node(drawn)) return;
   // Differences to one of the velocities: if all are equal, so is their mean, to the bit.
   double mass = 0, size_of_loads = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), load = Eigen::Vector3d::Zero();

@@ -7,11 +7,28 @@
 namespace qddot::reduce {
 namespace {
 
+// The vectors that span what changes in time: displacements, loads and accelerations.
+std::vector<Eigen::Vector3d> driven_directions(const DrawnPart& drawn) {
+  std::vector<Eigen::Vector3d> all;
+  std::vector<bool> is_used(drawn.curves.size(), false);
+  for (const int curve : drawn.curve_of) {
+    if (curve >= 0) is_used[static_cast<std::size_t>(curve)] = true;
+  }
+  if (drawn.gravity_curve >= 0) is_used[static_cast<std::size_t>(drawn.gravity_curve)] = true;
+  for (std::size_t c = 0; c < is_used.size(); ++c) {
+    if (!is_used[c]) continue;
+    const std::vector<Eigen::Vector3d> own = drawn.curves[c].directions();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
 // Whether all positions share coordinate d, and velocities, gravity and loads are zero in it.
 bool is_shared(const DrawnPart& drawn, int d) {
   const auto rests = [&](const Eigen::Vector3d& v) { return v[d] == 0; };
   return drawn.gravity[d] == 0 && std::ranges::all_of(drawn.v, rests) &&
          std::ranges::all_of(drawn.load, rests) &&
+         std::ranges::all_of(driven_directions(drawn), rests) &&
          std::ranges::all_of(drawn.x, [&](const auto& x) { return x[d] == drawn.x.front()[d]; });
 }
 
@@ -53,12 +70,15 @@ Span span_of(const DrawnPart& drawn) {
   const double noise = rounding * largest_coordinate(drawn.x);
   const double speed_noise = rounding * largest_coordinate(drawn.v);
   const double load_noise = rounding * largest_coordinate(drawn.load);
+  const std::vector<Eigen::Vector3d> driven = driven_directions(drawn);
+  const double driven_noise = rounding * largest_coordinate(driven);
   Span span;
   do {
     for (const auto& x : drawn.x) span.offer(x - drawn.x.front(), noise);
     for (const auto& v : drawn.v) span.offer(v, speed_noise);
     span.offer(drawn.gravity, drawn.gravity_noise);
     for (const auto& load : drawn.load) span.offer(load, load_noise);
+    for (const auto& direction : driven) span.offer(direction, driven_noise);
   } while (span.take() && span.rank() < 3);
   return span;
 }
@@ -100,7 +120,7 @@ Frame frame_of(const DrawnPart& drawn, int dimension) {
   constexpr double largest = 1e150;
   for (const double size :
        {largest_coordinate(drawn.x), largest_coordinate(drawn.v), largest_coordinate(drawn.load),
-        drawn.gravity.lpNorm<Eigen::Infinity>()}) {
+        largest_coordinate(driven_directions(drawn)), drawn.gravity.lpNorm<Eigen::Infinity>()}) {
     if (size > largest) return frame;
   }
   const Span span = span_of(drawn);

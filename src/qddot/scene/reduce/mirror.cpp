@@ -29,10 +29,12 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool nearly(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
 
-// How far places [m], velocities [m/s] and loads [N] may be from the mirrored ones.
+// How far places [m], velocities [m/s] and loads [N] may be from the mirrored ones, and curves of
+// time for their size.
 struct Closeness {
   double place, speed, load;
-  double mass = rounding;  // relative
+  double mass = rounding;   // relative
+  double curve = rounding;  // likewise
 };
 
 // Finds mirror planes of a part.
@@ -71,21 +73,24 @@ class MirrorSearch {
                                                  const std::vector<Images>& earlier) const {
     Plane plane{direction};
     if (std::abs(direction.dot(drawn_.gravity)) > drawn_.gravity_noise) return {};
+    if (!are_curves_alike(plane, drawn_.curve_of_gravity(), drawn_.curve_of_gravity(), coarse))
+      return {};
     center(plane);
     // A principal axis is less accurate than the nodes: to the square root of rounding if two
     // moments are nearly equal. The pairs of nodes that it finds determine it anew.
-    constexpr double coarse = 1e-7;
     const bool is_exact = (plane.normal.array() == 0).count() == 2;
     if (!is_exact) {
       const double extent = largest_coordinate(drawn_.x);
       const Closeness near{std::max(tolerance_, coarse * extent), coarse * extent,
-                           coarse * largest_coordinate(drawn_.load)};
+                           coarse * largest_coordinate(drawn_.load), rounding, coarse};
       if (!may_mirror(plane, near)) return {};
       const auto roughly = images(plane, near, {}, {});
       if (!roughly || !refine(plane, *roughly)) return {};
       center(plane);
       if (std::abs(plane.normal.dot(drawn_.gravity)) > drawn_.gravity_noise) return {};
     }
+    if (!are_curves_alike(plane, drawn_.curve_of_gravity(), drawn_.curve_of_gravity(), rounding))
+      return {};
     if (!may_mirror(plane, exact_)) return {};
     // The image of the first node decides the images of its neighbours. If several nodes are in one
     // place, each of them is tried.
@@ -117,7 +122,7 @@ class MirrorSearch {
     constexpr double wider = 16;
     if (drawn_.x.size() < 2 * sample) return true;
     const Closeness wide{wider * near.place, wider * near.speed, wider * near.load,
-                         wider * near.mass};
+                         wider * near.mass, wider * near.curve};
     const std::size_t step = drawn_.x.size() / sample;
     for (std::size_t i = 0; i < drawn_.x.size(); i += step) {
       const int own = static_cast<int>(i);
@@ -135,7 +140,16 @@ class MirrorSearch {
            (drawn_.v.empty() ||
             (plane.turned(drawn_.v[at(i)]) - drawn_.v[at(j)]).norm() <= near.speed) &&
            (!drawn_.is_loaded() ||
-            (plane.turned(drawn_.load[at(i)]) - drawn_.load[at(j)]).norm() <= near.load);
+            (plane.turned(drawn_.load[at(i)]) - drawn_.load[at(j)]).norm() <= near.load) &&
+           are_curves_alike(plane, drawn_.curve(at(i)), drawn_.curve(at(j)), near.curve);
+  }
+
+  static bool are_curves_alike(const Plane& plane, const TimeCurve* one, const TimeCurve* other,
+                               double near) {
+    if (!one || !other) return one == other;
+    const Eigen::Matrix3d turn =
+        Eigen::Matrix3d::Identity() - 2 * plane.normal * plane.normal.transpose();
+    return one->turned(turn).is_near(*other, near * largest_coordinate(one->directions()));
   }
 
   std::vector<int> candidates(const Plane& plane, int i) const {
@@ -252,6 +266,8 @@ class MirrorSearch {
            nearly(one.quartic, two.quartic, rounding * one.quartic) &&
            nearly(one.damping, two.damping, rounding * one.damping) && drawn.holds == image.holds;
   }
+
+  static constexpr double coarse = 1e-7;
 
   const DrawnPart& drawn_;
   double tolerance_;  // of places and rest lengths

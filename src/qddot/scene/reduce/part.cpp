@@ -1,6 +1,8 @@
 #include "qddot/scene/reduce/part.hpp"
 
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "qddot/model/constrained_system.hpp"
 #include "qddot/scene/reduce/folded_part.hpp"
@@ -21,22 +23,62 @@ std::vector<int> numbers_of(const DrawnPart& drawn, const FoldedNodes& half, boo
   return numbers;
 }
 
+// The curves of a network: those of the drawn part, in its frame and mirrored.
+class FoldedCurves {
+ public:
+  FoldedCurves(const DrawnPart& drawn, const Frame& frame, Network& network)
+      : drawn_(drawn), turn_(frame.axes.transpose()), network_(network) {
+    for (int d = frame.dimension; d < 3; ++d) turn_.row(d).setZero();
+  }
+
+  // The number in the network of the curve `drawn`, or -1, times these signs.
+  int number(int drawn, const Eigen::Vector3d& signs) {
+    if (drawn < 0) return -1;
+    const auto key = std::tuple(drawn, signs[0], signs[1], signs[2]);
+    const auto [place, is_new] = numbers_.try_emplace(key, static_cast<int>(numbers_.size()));
+    if (is_new) {
+      network_.curves.push_back(
+          drawn_.curves[static_cast<std::size_t>(drawn)].turned(signs.asDiagonal() * turn_));
+    }
+    return place->second;
+  }
+  // The same of a node.
+  int of_node(std::size_t i, const Eigen::Vector3d& signs) {
+    return drawn_.is_driven() ? number(drawn_.curve_of[i], signs) : -1;
+  }
+
+ private:
+  const DrawnPart& drawn_;
+  Eigen::Matrix3d turn_;
+  Network& network_;
+  std::map<std::tuple<int, double, double, double>, int> numbers_;
+};
+
 void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
-                const std::vector<int>& numbers, Network& network) {
+                const std::vector<int>& numbers, FoldedCurves& curves, Network& network) {
   const auto& [a, b, mirror] = spring.ends;
   const auto& [ends, law, holds, stiff] = spring;
   const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
   const int i = numbers[from], j = numbers[to];
   const Eigen::Vector3d signs = mirror.diagonal();
   if (i == no_number) {
-    network.anchors.push_back({j, signs.cwiseProduct(half.y[from]), law, holds, stiff});
+    network.anchors.push_back({j, signs.cwiseProduct(half.y[from]), law, holds, stiff, 0,
+                               curves.of_node(from, signs)});
   } else if (j == no_number) {
-    network.anchors.push_back({i, signs.cwiseProduct(half.y[to]), law, holds, stiff});
+    network.anchors.push_back({i, signs.cwiseProduct(half.y[to]), law, holds, stiff, 0,
+                               curves.of_node(to, signs)});
   } else if (!mirror.are_all_plus()) {
     network.image_links.push_back({i, j, signs, law, holds, stiff});
   } else {
     network.links.push_back({i, j, law, holds, stiff});
   }
+}
+
+bool has_moving_pins(const DrawnPart& drawn) {
+  for (std::size_t i = drawn.free; i < drawn.nodes.size(); ++i) {
+    if (drawn.curve(i)) return true;
+  }
+  return false;
 }
 
 // Massless nodes on two springs, by the part's numbers. In compression they fold up across the
@@ -62,11 +104,12 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   mirrors_.frame = frame;
   if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(drawn, frame);
 
-  const bool with_pins = !reductions.has(Reduction::pins);
+  const bool with_pins = !reductions.has(Reduction::pins) && !has_moving_pins(drawn);
   make_network(drawn, dimension, with_pins);
   network_.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
   network_.offers_split = drawn.offers_split;
-  if (network_.uses_constant_stiffness && !with_pins) {
+  // That none turns over is proven by energy, which driving changes.
+  if (network_.uses_constant_stiffness && !with_pins && !drawn.is_driven()) {
     if (auto straight = straightened(network_, initial_.q, initial_.v, is_loaded_)) {
       network_ = std::move(*straight);
       is_straightened_ = true;
@@ -108,6 +151,7 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
   network.load = Vec::Zero(axes * count);
   network.air_damping = drawn.air_damping;
   const Eigen::Vector3d g = mirrors_.frame.direction(drawn.gravity);
+  FoldedCurves curves(drawn, mirrors_.frame, network);
   nodes_.reserve(drawn.free);
   masses_.reserve(drawn.free);
   images_.reserve(drawn.free);
@@ -129,6 +173,15 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
       energy_of_origin_ -= drawn.load[i].dot(origin_);
     }
     if (i >= drawn.free) continue;
+    const Eigen::Vector3d y = half.y[static_cast<std::size_t>(image.original)];
+    if (drawn.is_driven() && drawn.curve_of[i] >= 0) {
+      const int curve = curves.of_node(i, image.signs.diagonal());
+      network.driven_loads.push_back({number, curve, 1, y});
+    }
+    if (drawn.gravity_curve >= 0) {
+      const int curve = curves.number(drawn.gravity_curve, image.signs.diagonal());
+      network.driven_loads.push_back({number, curve, drawn.mass[i], y});
+    }
     nodes_.push_back(drawn.nodes[i]);
     masses_.push_back(drawn.mass[i]);
     images_.push_back({number, image.signs});
@@ -141,7 +194,7 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
     const bool would_fold = may_fold && (joints[static_cast<std::size_t>(spring.ends.a)] ||
                                          joints[static_cast<std::size_t>(spring.ends.b)]);
     if (would_fold) spring.holds = Holds::in_tension;
-    add_spring(spring, half, numbers, network);
+    add_spring(spring, half, numbers, curves, network);
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,29 @@ struct Flying : Flight {
   std::size_t node;
 };
 
+// A pinned node that moves: by its curve from where it is at the start.
+struct Moving {
+  std::size_t node;
+  TimeCurve curve;
+};
+
+// A spring between two pinned nodes, of which one moves at least.
+struct DrivenSpring {
+  std::array<std::size_t, 2> ends;
+  SpringLaw law;
+
+  // Its energy at t [J].
+  double energy(const std::vector<Node>& nodes, const std::vector<TimeCurve>& curves,
+                double t) const {
+    const auto place = [&](std::size_t i) -> Eigen::Vector3d {
+      const int curve = nodes[i].curve;
+      if (curve < 0) return nodes[i].position;
+      return nodes[i].position + curves[static_cast<std::size_t>(curve)].at(t);
+    };
+    return law.energy((place(ends[1]) - place(ends[0])).norm());
+  }
+};
+
 // The pieces that a Model consists of: a system with its start, and what leads from the unknowns
 // back to all nodes and energies.
 struct Pieces {
@@ -26,8 +50,12 @@ struct Pieces {
   std::vector<Series> series{};
   std::vector<Flying> flying{};
   std::vector<Part> parts{};
+  std::vector<Moving> moving{};
+  std::vector<DrivenSpring> driven_springs{};
+  std::vector<TimeCurve> curves{};  // of the scene
   std::shared_ptr<const System> system{};
-  double static_energy = 0;  // [J], of springs between pinned nodes, and of the parts' origins
+  // [J], of springs between pinned nodes that rest, and of the parts' origins.
+  double static_energy = 0;
   State initial{};
   std::vector<Finding> findings{};
 };

@@ -17,11 +17,12 @@ namespace {
 
 // Whether the part of each node never leaves a line.
 std::vector<bool> on_lines(const std::vector<Node>& nodes, const std::vector<Spring>& springs,
-                           const Eigen::Vector3d& gravity, int dimension) {
+                           const Scene& scene) {
+  const int dimension = scene.dimension;
   std::vector<bool> is_on_line(nodes.size(), dimension == 1);
   if (dimension == 1) return is_on_line;
   for (PartMembers& members : parts_of(nodes, springs)) {
-    DrawnPart drawn = drawn_part(std::move(members), nodes, springs, gravity);
+    DrawnPart drawn = drawn_part(std::move(members), nodes, springs, scene);
     let_fall(drawn);  // a part stays on its line when it falls, whether that is reduced or not
     if (frame_of(drawn, dimension).dimension > 1) continue;
     for (std::size_t i = 0; i < drawn.free; ++i) is_on_line[drawn.nodes[i]] = true;
@@ -59,15 +60,22 @@ class Steps {
   const Scene& scene_;
   const Reductions& reductions_;
   std::optional<std::vector<Spring>> changed_{};
-  Pieces pieces_{.nodes = scene_.nodes, .dimension = scene_.dimension};
+  Pieces pieces_{
+      .nodes = scene_.nodes, .dimension = scene_.dimension, .curves = scene_.curves};
   std::size_t resting_ = 0;  // parts that rest in their fall
 };
 
 Pieces Steps::taken() {
-  for (Node& node : pieces_.nodes) {
-    if (node.pinned) node.velocity.setZero();
+  for (std::size_t i = 0; i < pieces_.nodes.size(); ++i) {
+    Node& node = pieces_.nodes[i];
+    if (!node.pinned) continue;
+    node.velocity.setZero();
+    if (node.curve < 0) continue;
+    const TimeCurve& curve = scene_.curves[static_cast<std::size_t>(node.curve)];
+    node.velocity = curve.rate(0);
+    pieces_.moving.push_back({i, curve});
   }
-  if (reductions_.has(Reduction::pins)) leave_out_pins();
+  if (reductions_.has(Reduction::pins) || !pieces_.moving.empty()) leave_out_pins();
   name_stiff();
   if (reductions_.has(Reduction::duplicates)) merge();
   if (reductions_.has(Reduction::massless)) condense();
@@ -88,7 +96,7 @@ void Steps::name_stiff() {
 void Steps::leave_out_pins() {
   const auto pins =
       static_cast<std::size_t>(std::ranges::count(pieces_.nodes, true, &Node::pinned));
-  if (pins > 0) report(Reduction::pins, pinned_sentence(pins));
+  if (pins > 0) report(Reduction::pins, pinned_sentence(pins, pieces_.moving.size()));
 }
 
 void Steps::merge() {
@@ -105,7 +113,7 @@ void Steps::condense() {
   if (!changed_) changed_ = scene_.springs;
   pieces_.series =
       condense_series(pieces_.nodes, *changed_, scene_.stiff_above,
-                      on_lines(pieces_.nodes, *changed_, scene_.gravity, pieces_.dimension));
+                      on_lines(pieces_.nodes, *changed_, scene_));
   if (pieces_.series.empty()) return;
   std::vector<std::size_t> condensed;
   for (const Series& series : pieces_.series) {
@@ -118,7 +126,12 @@ void Steps::condense() {
 void Steps::leave_out_static_springs() {
   for (const auto& [ends, law, holds, stiff] : springs()) {
     const Node &a = pieces_.nodes[ends[0]], &b = pieces_.nodes[ends[1]];
-    if (a.pinned && b.pinned) pieces_.static_energy += law.energy((b.position - a.position).norm());
+    if (!a.pinned || !b.pinned) continue;
+    if (a.curve >= 0 || b.curve >= 0) {
+      pieces_.driven_springs.push_back({ends, law});
+    } else {
+      pieces_.static_energy += law.energy((b.position - a.position).norm());
+    }
   }
 }
 
@@ -132,8 +145,9 @@ std::vector<PartMembers> Steps::divide() {
   for (PartMembers& members : parts_of(pieces_.nodes, springs())) {
     const auto first = static_cast<std::size_t>(members.nodes.front());
     if (is_condensed[first]) continue;  // it is on no spring any more
-    if (members.springs.empty() && reductions_.has(Reduction::free_flight)) {
-      const Node& node = pieces_.nodes[first];
+    const Node& node = pieces_.nodes[first];
+    const bool is_driven = node.curve >= 0 || (scene_.gravity_curve >= 0 && node.mass > 0);
+    if (members.springs.empty() && !is_driven && reductions_.has(Reduction::free_flight)) {
       Flight flight{.velocity = node.velocity};
       if (node.mass > 0) {
         flight.gravity = scene_.gravity + node.load / node.mass;
@@ -189,7 +203,7 @@ void Steps::build(std::vector<PartMembers> parts) {
 }
 
 std::optional<DrawnPart> Steps::moving_part(PartMembers members) {
-  DrawnPart drawn = drawn_part(std::move(members), pieces_.nodes, springs(), scene_.gravity);
+  DrawnPart drawn = drawn_part(std::move(members), pieces_.nodes, springs(), scene_);
   drawn.air_damping = scene_.air_damping;
   drawn.offers_split = scene_.stiff_above.has_value();
   if (!reductions_.has(Reduction::falling)) return drawn;

@@ -55,9 +55,14 @@ std::string subspace(const Part& part, int dimension) {
 
 }  // namespace
 
-std::string pinned_sentence(std::size_t pins) {
-  return fmt::format("{} stay{} where drawn and {} no unknowns", counted(pins, "pinned node"),
-                     pins == 1 ? "s" : "", pins == 1 ? "has" : "have");
+std::string pinned_sentence(std::size_t pins, std::size_t moving) {
+  const std::string where = moving == 0      ? "where drawn"
+                            : moving == pins ? "on curves of time"
+                                             : fmt::format("where drawn or, {} of them, on curves "
+                                                           "of time,",
+                                                           moving);
+  return fmt::format("{} stay{} {} and {} no unknowns", counted(pins, "pinned node"),
+                     pins == 1 ? "s" : "", where, pins == 1 ? "has" : "have");
 }
 
 std::string merged_sentence(std::size_t gone, std::size_t left) {

@@ -12,7 +12,7 @@
 namespace qddot::reduce {
 
 // The sentences that explain each reduction and why it is exact.
-std::string pinned_sentence(std::size_t pins);
+std::string pinned_sentence(std::size_t pins, std::size_t moving);
 std::string merged_sentence(std::size_t gone, std::size_t left);
 std::string condensed_sentence(const std::vector<std::size_t>& nodes, std::size_t series);
 std::string flying_sentence(const std::vector<std::size_t>& nodes);
