@@ -16,6 +16,7 @@ Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, con
                  const Model& scene, double until)
     : scene_(scene),
       is_damped_(is_damped(drawn)),
+      is_driven_(is_driven(drawn)),
       trajectory_times_(samples(every.trajectory, until)),
       energy_times_(samples(every.energy, until)),
       motion_times_(samples(every.motion, until)) {
@@ -28,7 +29,9 @@ Outputs::Outputs(const Arguments& a, const Every& every, const Scene& drawn, con
   }
   if (!a.energy_path->empty()) {
     std::vector<std::string> columns = {"t", "kinetic", "potential", "total"};
-    if (is_damped_) columns.insert(columns.end(), {"dissipated", "balance"});
+    if (is_damped_) columns.push_back("dissipated");
+    if (is_driven_) columns.push_back("driven");
+    if (is_damped_ || is_driven_) columns.push_back("balance");
     energy_ = std::make_unique<CsvFile>(a.energy_path, columns);
     start_energy_ = scene.kinetic(scene.initial()) + scene.potential(scene.initial());
   }
@@ -59,10 +62,13 @@ void Outputs::see(const State& state) {
   if (energy_ && is_sample(energy_times_, state.t)) {
     const double kinetic = scene_.kinetic(state);
     const double potential = scene_.potential(state);
-    const double total = kinetic + potential, dissipated = scene_.dissipated(state);
-    if (is_damped_) {
-      energy_->row(state.t, kinetic, potential, total, dissipated,
-                   total + dissipated - start_energy_);
+    const double total = kinetic + potential;
+    const double dissipated = scene_.dissipated(state), driven = scene_.driven(state);
+    const double balance = total + dissipated - driven - start_energy_;
+    if (is_damped_ && is_driven_) {
+      energy_->row(state.t, kinetic, potential, total, dissipated, driven, balance);
+    } else if (is_damped_ || is_driven_) {
+      energy_->row(state.t, kinetic, potential, total, is_damped_ ? dissipated : driven, balance);
     } else {
       energy_->row(state.t, kinetic, potential, total);
     }

@@ -38,7 +38,7 @@ class Outputs {
 
  private:
   const Model& scene_;
-  const bool is_damped_;
+  const bool is_damped_, is_driven_;
   double start_energy_ = 0;  // [J]
   std::vector<double> trajectory_times_, energy_times_, motion_times_;
   std::unique_ptr<CsvFile> final_, trajectory_, energy_;

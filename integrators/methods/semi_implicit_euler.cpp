@@ -29,7 +29,11 @@ class SemiImplicitEuler final : public Formula {
 
   Outcome step(const State& now, double h, State& next) {
     const At at(next.t, now.q);
-    force(at, f_);
+    if (is_damped() && is_driven()) {
+      force({next.t, now.q, none_}, f_);  // dashpots of supports that move pull nodes at rest
+    } else {
+      force(at, f_);
+    }
     if (!factorize(at, h)) return indefinite_at(at);
     b_ = system().mass().cwiseProduct(now.v) + h * f_;
     if (const Outcome outcome = solve(b_, next.v); outcome != Outcome::reached_end) {
@@ -68,7 +72,7 @@ class SemiImplicitEuler final : public Formula {
     return outcome;
   }
 
-  Vec f_{system().size()}, b_{system().size()};
+  Vec f_{system().size()}, b_{system().size()}, none_{Vec::Zero(system().size())};
   SymmetricMatrix k_{system().stiffness_pattern()};
   EffectiveMass matrix_{system(), options().solver};
   double factorized_h_ = 0;

@@ -87,7 +87,6 @@ class TakahashiImada4 final : public Formula {
       x.is_shown = true;
     }
     const bool is_other = x.has_begun && x.is_shown;
-    state.t = x.t;
     state.q = is_other ? x.shown_q : x.q;
     state.v = is_other ? x.shown_v : x.v;
     state.work = is_other ? x.shown_work : x.work;

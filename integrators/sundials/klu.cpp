@@ -20,13 +20,13 @@ class Klu final : public NewtonMatrix {
         pattern_(system),
         vector_(make_stock_vector(stacked_size(system), context)),
         entries_(check(SUNSparseMatrix(stacked_size(system), stacked_size(system),
-                                       std::ssize(pattern_.rows()) + (system.damping() ? 1 : 0),
+                                       std::ssize(pattern_.rows()) + stacked_size(system) % 2,
                                        CSC_MAT, context))),
         klu_(check(SUNLinSol_KLU(vector_.get(), entries_.get(), context))) {
     std::ranges::copy(pattern_.column_starts(), SM_INDEXPTRS_S(entries_.get()));
     std::ranges::copy(pattern_.rows(), SM_INDEXVALS_S(entries_.get()));
-    if (!system.damping()) return;
-    // The energy that friction takes has an entry on the diagonal.
+    if (!has_work(vector_.get())) return;
+    // Work has an entry on the diagonal.
     const auto count = std::ssize(pattern_.rows());
     SM_INDEXVALS_S(entries_.get())[count] = 2 * system.size();
     SM_INDEXPTRS_S(entries_.get())[2 * system.size() + 1] = count + 1;
@@ -41,7 +41,7 @@ class Klu final : public NewtonMatrix {
   }
   void fill(double alpha, double beta, const SymmetricMatrix& k, const SymmetricMatrix* damping) {
     pattern_.fill(alpha, beta, s_, k, e_, SM_DATA_S(entries_.get()), damping);
-    if (damping) SM_DATA_S(entries_.get())[pattern_.rows().size()] = alpha;
+    if (has_work(vector_.get())) SM_DATA_S(entries_.get())[pattern_.rows().size()] = alpha;
   }
   void set_implicit_form(double c, const SymmetricMatrix& k,
                          const SymmetricMatrix* damping) override {

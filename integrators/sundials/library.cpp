@@ -133,7 +133,7 @@ void Library::set_work(const State& from, State& next) {
     const double h = next.t - from.t;
     const Vec q = (from.q + next.q) / 2 + h / 8 * (from.v - next.v);
     const Vec v = 1.5 / h * (next.q - from.q) - (from.v + next.v) / 4;
-    const auto rate = [&](const At& at) { return system().driving()->driving_power(at).driven; };
+    const auto rate = [&](const At& at) { return power(at).driven; };
     next.work.driven += h / 6 * (rate(from) + 4 * rate({from.t + h / 2, q, v}) + rate(next));
     next.work.dissipated = next.work.driven + taken;
   } else {

@@ -15,16 +15,16 @@ namespace {
 // The capabilities of a system.
 struct Offers {
   bool stiffness = false, split_stiffness = false, discrete_gradient = false, laplacian = false,
-       pieces = false, validity = false, kinks = false, damping = false, blocks = false,
-       split = false;
+       pieces = false, validity = false, kinks = false, damping = false, driving = false,
+       blocks = false, split = false;
   bool operator==(const Offers&) const = default;
 };
 Offers offers_of(const System& s) {
   return {
       s.has_stiffness(),        s.split_stiffness() != nullptr, s.discrete_gradient() != nullptr,
       s.laplacian() != nullptr, s.pieces() != nullptr,          s.validity() != nullptr,
-      s.kinks() != nullptr,     s.damping() != nullptr,         !s.blocks().empty(),
-      s.split() != nullptr};
+      s.kinks() != nullptr,     s.damping() != nullptr,         s.driving() != nullptr,
+      !s.blocks().empty(),      s.split() != nullptr};
 }
 
 // A mass on a spring of V = q^2/2, by V and f alone.
@@ -57,6 +57,14 @@ class Offering final : public CapableSystem {
   const Kinks* kinks() const override { return offers_.kinks ? this : nullptr; }
   const Damping* damping() const override { return offers_.damping ? this : nullptr; }
   bool is_conservative() const override { return !offers_.damping; }
+  const Driving* driving() const override { return offers_.driving ? this : nullptr; }
+  bool is_autonomous() const override { return !offers_.driving; }
+  Work driving_power(const At& at) const override { return {.driven = at.q[0]}; }
+  double potential_change(double from, double to, const VecView& q) const override {
+    return (to - from) * q[0];
+  }
+  void force_rate(const At&, MutableVec rate) const override { rate[0] = -1; }
+  std::vector<Corner> corners() const override { return {{2, 1}, {3, 3}}; }
   void friction(const At& at, MutableVec f) const override { f = -at.v; }
   void damping_matrix(const At&, SymmetricMatrix& c) const override { c.coeffs()[0] = 1; }
   bool damping_is_constant() const override { return true; }
@@ -70,10 +78,12 @@ class Offering final : public CapableSystem {
   void mean_force(const At& a, const At& b, MutableVec f) const override { f = -(a.q + b.q) / 2; }
   void assemble_laplacian(SymmetricMatrix& l) const override { l.coeffs()[0] = 1; }
   bool bounds_stiffness() const override { return true; }
-  bool is_linear_at(const ConstVec& q) const override { return q[0] < 1; }
-  bool is_valid_at(const ConstVec& q) const override { return q[0] < 1; }
+  bool is_linear_at(const At& at) const override { return at.q[0] < 1; }
+  bool is_valid_at(const At& at) const override { return at.q[0] < 1; }
   Index kink_count() const override { return 1; }
-  void kink_lengths(const ConstVec& q, MutableVec lengths) const override { lengths[0] = q[0] - 1; }
+  void kink_lengths(const At& at, MutableVec lengths) const override {
+    lengths[0] = at.q[0] - 1;
+  }
 
  private:
   Offers offers_;
@@ -92,6 +102,7 @@ constexpr Offers each[] = {{},
                            {.validity = true},
                            {.kinks = true},
                            {.stiffness = true, .damping = true},
+                           {.driving = true},
                            {.split = true}};
 
 // Systems that offer these, and networks.
@@ -152,6 +163,12 @@ BOOST_AUTO_TEST_CASE(a_network_offers_what_it_has) {
   Offers directed = always;
   directed.pieces = true;
   BOOST_TEST((offers(spring) == directed));
+  spring.anchors[0].direction = 0;
+  spring.anchors[0].curve = 0;
+  spring.curves = {{.harmonics = {{{1, 0, 0}, 3, 0}}}};
+  Offers driven = on_a_line;
+  driven.driving = true;
+  BOOST_TEST((offers(spring) == driven));
 }
 
 BOOST_AUTO_TEST_CASE(a_constrained_system_offers_what_the_system_in_it_offers) {
@@ -184,6 +201,7 @@ BOOST_AUTO_TEST_CASE(blocks_offer_together_what_all_of_them_offer_and_exceptions
                             .validity = a.validity || b.validity,
                             .kinks = a.kinks || b.kinks,
                             .damping = a.damping || b.damping,
+                            .driving = a.driving || b.driving,
                             .blocks = true,
                             .split = false};
       BOOST_TEST((offers_of(both) == expected));

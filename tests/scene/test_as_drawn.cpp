@@ -15,7 +15,7 @@ namespace {
 
 DrawnPart drawn_part(const Scene& scene) {
   return reduce::drawn_part(joined(parts_of(scene.nodes, scene.springs)).front(), scene.nodes,
-                            scene.springs, scene.gravity);
+                            scene.springs, scene);
 }
 
 template <class Change>

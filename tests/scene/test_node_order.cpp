@@ -28,7 +28,7 @@ std::vector<std::size_t> shuffled(std::size_t count) {
 
 DrawnPart whole(const Scene& scene) {
   return drawn_part(std::move(joined(parts_of(scene.nodes, scene.springs)).front()), scene.nodes,
-                    scene.springs, scene.gravity);
+                    scene.springs, scene);
 }
 
 double mean_distance(const DrawnPart& part) {

@@ -68,7 +68,12 @@ void LinearMotion::propagate(const State& from, double duration, State& to,
   f.resize(from.q.size());
   y.resize(squares_.size());
   rate.resize(squares_.size());
-  system_.force({from.t, from.q}, f);
+  if (system_.driving() && system_.damping()) {
+    rate.setZero();  // dashpots of supports that move pull nodes at rest
+    system_.force({from.t, from.q, rate}, f);
+  } else {
+    system_.force({from.t, from.q}, f);
+  }
   y = root_mass_.cwiseProduct(from.v);
   velocity.noalias() = u_.transpose() * y;  // y'(0)
   f = f.cwiseQuotient(root_mass_);

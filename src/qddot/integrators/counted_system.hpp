@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "qddot/integrators/counts.hpp"
 #include "qddot/model/beside_force.hpp"
 #include "qddot/model/capabilities.hpp"
@@ -27,28 +29,20 @@ class CountedSystem {
 
   const System& system() const { return system_; }
 
+  // Has all places be in the piece of time that this time [s] is in (see At); NaN: in their own.
+  void stay_within(double t) { within_ = t; }
+
   // f [N] into `f` (n).
   void force(const At& at, MutableVec f) { force(system_, at, f); }
   void force(const System& part, const At& at, MutableVec f) {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
-    if (driving_) driven_ = books(part) ? driving_->driving_power(at) : Work{};
-    if (!damping_ || at.v.size() == 0) return part.force(at, f);
-    friction_.resize(f.size());
-    const Damping* damping = part.damping();
-    if (damping && damping->damped_force(at, f, friction_, nullptr)) {
-      power_ = -product(friction_, at.v);
-      return;
-    }
-    part.force({at.t, at.q}, f);
-    if (damping) {
-      set_friction(*damping, at);
-      f += friction_;
-    } else {
-      friction_.setZero();
-      power_ = 0;
-    }
+    if (!driving_) return sum_force(part, at, f);
+    const At there = placed(at);
+    driven_ = books(part) ? driving_->driving_power(there) : Work{};
+    sum_force(part, there, f);
   }
+
   // f_d [N] of the last force at velocities v; zero if the system has no Damping.
   const Vec& friction() const { return friction_; }
   // The same; this may change it for a vector of any content, in place of a copy.
@@ -58,14 +52,16 @@ class CountedSystem {
   // That of driving alone, of any force. Friction then has -v'f_d beside.
   const Work& driving_power() const { return driven_; }
   // The same as power(), at any place; friction() is then that of this place.
-  Work power(const At& at) {
+  Work power(const At& given) {
+    const At at = placed(given);
     const Stopwatch watch(clock_, &Seconds::force);
     if (damping_) set_friction(*damping_, at);
     if (driving_) driven_ = driving_->driving_power(at);
     return power();
   }
   // Subtracts rate C [N/m] of a part with Damping from `k`, a K of its pattern; rate in 1/s.
-  void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {
+  void subtract_damping(const System& part, const At& given, double rate, SymmetricMatrix& k) {
+    const At at = placed(given);
     const Stopwatch watch(clock_, &Seconds::stiffness);
     if (c_.nonZeros() != k.nonZeros()) c_ = k;
     part.damping()->damping_matrix(at, c_);
@@ -74,24 +70,11 @@ class CountedSystem {
   // The same with work beside it (see System::force_beside). The time of that work is not a
   // force's, so a timed run does it before and after.
   double force_beside(const At& at, MutableVec f, BesideForce& beside) {
-    const bool is_damped = damping_ && at.v.size() > 0;
-    if (!clock_ && !is_damped) {
-      ++counts.force_evaluations;
-      const double sum = system_.force_beside(at, f, beside);
-      if (driving_) driven_ = driving_->driving_power(at);
-      return sum;
-    }
-    if (!clock_) {
-      friction_.resize(f.size());
-      if (const auto sum = damping_->damped_force(at, f, friction_, &beside)) {
-        ++counts.force_evaluations;
-        if (driving_) driven_ = driving_->driving_power(at);
-        return *sum;
-      }
-    }
-    beside.before(0, system_.size());
-    force(at, f);
-    return beside.after(0, system_.size());
+    if (!driving_) return sum_force_beside(at, f, beside);
+    const At there = placed(at);
+    const double sum = sum_force_beside(there, f, beside);
+    driven_ = driving_->driving_power(there);
+    return sum;
   }
   // Driving of the system, nullptr if it has none.
   const Driving* driving() const { return driving_; }
@@ -99,29 +82,30 @@ class CountedSystem {
   void mean_force(const At& a, const At& b, MutableVec f) {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
-    discrete_gradient_->mean_force(a, b, f);
+    discrete_gradient_->mean_force(placed(a), placed(b), f);
   }
   // K [N/m] into `k`, which has the system's pattern.
   void stiffness(const At& at, SymmetricMatrix& k) { stiffness(system_, at, k); }
   void stiffness(const System& part, const At& at, SymmetricMatrix& k) {
     ++counts.stiffness_evaluations;
     const Stopwatch watch(clock_, &Seconds::stiffness);
-    part.stiffness(at, k);
+    part.stiffness(placed(at), k);
   }
   // The material part of K of a system that knows it, else K.
   void material_stiffness(const System& part, const At& at, SymmetricMatrix& k) {
     ++counts.stiffness_evaluations;
     const Stopwatch watch(clock_, &Seconds::stiffness);
-    if (const auto* split = part.split_stiffness()) return split->material_stiffness(at, k);
-    part.stiffness(at, k);
+    if (const auto* split = part.split_stiffness()) return split->material_stiffness(placed(at), k);
+    part.stiffness(placed(at), k);
   }
   // SplitStiffness::weighted_stiffness. If the system has none, this is the weight times all of K.
   // As the weight goes to 0, M - s K goes to M, which is positive definite.
   void weighted_stiffness(const At& at, double compression_weight, SymmetricMatrix& k) {
     ++counts.stiffness_evaluations;
     const Stopwatch watch(clock_, &Seconds::stiffness);
-    if (split_stiffness_) return split_stiffness_->weighted_stiffness(at, compression_weight, k);
-    system_.stiffness(at, k);
+    if (split_stiffness_)
+      return split_stiffness_->weighted_stiffness(placed(at), compression_weight, k);
+    system_.stiffness(placed(at), k);
     if (compression_weight != 1) k.coeffs() *= compression_weight;
   }
 
@@ -132,6 +116,46 @@ class CountedSystem {
   Seconds seconds;
 
  private:
+  void sum_force(const System& part, const At& at, MutableVec f) {
+    if (!damping_ || at.v.size() == 0) return part.force(at, f);
+    friction_.resize(f.size());
+    const Damping* damping = part.damping();
+    if (damping && damping->damped_force(at, f, friction_, nullptr)) {
+      power_ = -product(friction_, at.v);
+      return;
+    }
+    At without_velocities(at.t, at.q);
+    without_velocities.within = at.within;
+    part.force(without_velocities, f);
+    if (damping) {
+      set_friction(*damping, at);
+      f += friction_;
+    } else {
+      friction_.setZero();
+      power_ = 0;
+    }
+  }
+  double sum_force_beside(const At& at, MutableVec f, BesideForce& beside) {
+    const bool is_damped = damping_ && at.v.size() > 0;
+    if (!clock_ && !is_damped) {
+      ++counts.force_evaluations;
+      return system_.force_beside(at, f, beside);
+    }
+    if (!clock_) {
+      friction_.resize(f.size());
+      if (const auto sum = damping_->damped_force(at, f, friction_, &beside)) {
+        ++counts.force_evaluations;
+        return *sum;
+      }
+    }
+    beside.before(0, system_.size());
+    force(at, f);
+    return beside.after(0, system_.size());
+  }
+  At placed(At at) const {
+    at.within = within_;
+    return at;
+  }
   // Whether the force of the part books what driving gives: that of the whole, or the soft half.
   bool books(const System& part) const {
     return &part == &system_ || (system_.split() && &part == system_.split()->soft.get());
@@ -149,6 +173,7 @@ class CountedSystem {
   const Damping* damping_;
   const Driving* driving_;
   Seconds* clock_;
+  double within_ = std::numeric_limits<double>::quiet_NaN();
   Vec friction_;
   double power_ = 0;
   Work driven_{};  // rates

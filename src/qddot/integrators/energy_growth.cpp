@@ -24,7 +24,8 @@ constexpr double shortest_way = 1e-18, longest_way = 1;
 // The lowest V on the path q + s M^-1 f, along which a motion from rest at q begins. V falls there
 // at first. Each s is twice the last one. `ahead` and `way` are scratch.
 double lowest_ahead(const System& system, const At& start, Vec& ahead, Vec& way) {
-  const auto& [t, q, v] = start;
+  const double t = start.t;
+  const VecView& q = start.q;
   system.force({t, q}, way);
   for (Index i = 0; i < way.size(); ++i) {
     way[i] = system.mass()[i] > 0 ? way[i] / system.mass()[i] : 0;

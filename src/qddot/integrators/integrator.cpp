@@ -148,8 +148,9 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
     has_begun_ = true;
     work_ = state.work;
     for (Part& part : parts_) {
-      part.run->clear(corners.empty() ? t_end : corners.front(), stop, is_whole() ? observer.step : nullptr);
+      part.run->clear(t_end, stop, is_whole() ? observer.step : nullptr);
       part.growth = 1;
+      if (!corners.empty()) part.run->stay_before(state.t, corners.front());
     }
     for (Part& part : parts_) {
       if (!is_whole()) {

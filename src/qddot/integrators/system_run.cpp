@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -42,6 +43,7 @@ void SystemRun::clear(double t_end, std::stop_token stop,
   system_.counts = {};
   system_.seconds = {};
   t_end_ = t_end;
+  system_.stay_within(std::numeric_limits<double>::quiet_NaN());
   stop_ = std::move(stop);
   shown_steps_ = std::move(shown_steps);
   shows_steps_ = static_cast<bool>(shown_steps_);
@@ -61,8 +63,13 @@ void SystemRun::begin(const State& state) {
 }
 
 void SystemRun::begin_anew(const State& state, double t_end) {
-  t_end_ = t_end;
+  stay_before(state.t, t_end);
   stepper_->start(state);
+}
+
+void SystemRun::stay_before(double t, double t_end) {
+  t_end_ = t_end;
+  system_.stay_within(t + (t_end - t) / 2);
 }
 
 Outcome SystemRun::run_to(State& state, double t_stop) {

@@ -35,8 +35,11 @@ class SystemRun {
   void clear(double t_end, std::stop_token stop, std::function<void(const State&)> shown_steps);
   // Prepares everything before the first step from `state`.
   void begin(const State& state);
-  // Prepares steps from `state` up to t_end, which continue the run and know no earlier steps.
+  // Prepares steps from `state` up to t_end, which continue the run and know no earlier steps. They
+  // stay in the piece of time between (see At).
   void begin_anew(const State& state, double t_end);
+  // Has the steps from t stay in the piece of time up to t_end, their last end.
+  void stay_before(double t, double t_end);
   // Brings `state` from its time to t_stop exactly. If it fails, `state` is the last accepted one,
   // or stays if no step followed it. Exceptions pass through, after the same.
   Outcome run_to(State& state, double t_stop);

@@ -35,21 +35,29 @@ class DrivenNetwork {
   bool is_driven() const { return !curves_.empty(); }
   bool has_loads() const { return !loads_.empty(); }
 
-  // The values of all curves at t [s]; none if nothing is driven. A t that is NaN is the start, 0.
-  std::vector<Point> values(double t) const { return of_all(&TimeCurve::at, t); }
-  std::vector<Point> rates(double t) const { return of_all(&TimeCurve::rate, t); }
+  // A time of curves; see At.
+  struct Time {
+    Time(const At& at)
+        : t(std::isnan(at.t) ? 0 : at.t), within(std::isnan(at.within) ? t : at.within) {}
+    explicit Time(double time) : t(time), within(time) {}
+    double t, within;
+  };
 
-  // Adds the driven loads at t to f.
-  void add_loads(double t, MutableVec f) const {
-    if (has_loads()) add_loads(values(t), f);
+  // The values of all curves; none if nothing is driven. A t that is NaN is the start, 0.
+  std::vector<Point> values(const Time& time) const { return of_all(&TimeCurve::at, time); }
+  std::vector<Point> rates(const Time& time) const { return of_all(&TimeCurve::rate, time); }
+
+  // Adds the driven loads to f.
+  void add_loads(const Time& time, MutableVec f) const {
+    if (has_loads()) add_loads(values(time), f);
   }
   // Their potential energy [J].
   double load_energy(const At& at) const {
-    return has_loads() ? load_energy(values(at.t), at.q) : 0;
+    return has_loads() ? load_energy(values(at), at.q) : 0;
   }
 
   Work power(const At& at) const {
-    const std::vector<Point> s = values(at.t), s_rate = rates(at.t);
+    const std::vector<Point> s = values(at), s_rate = rates(at);
     Work power{.driven = load_energy(s_rate, at.q)};
     for (const Anchor& anchor : anchors_) {
       const Point d = anchor.point + s[anchor.curve] - layout_.at(at.q, anchor.i);
@@ -65,7 +73,7 @@ class DrivenNetwork {
   }
 
   double potential_change(double from, double to, const VecView& q) const {
-    const std::vector<Point> before = values(from), after = values(to);
+    const std::vector<Point> before = values(Time(from)), after = values(Time(to));
     double change = load_energy(after, q) - load_energy(before, q);
     for (const Anchor& anchor : anchors_) {
       const Point rest = anchor.point - layout_.at(q, anchor.i);
@@ -76,7 +84,7 @@ class DrivenNetwork {
   }
 
   void force_rate(const At& at, MutableVec rate) const {
-    const std::vector<Point> s = values(at.t), s_rate = rates(at.t);
+    const std::vector<Point> s = values(at), s_rate = rates(at);
     rate.setZero();
     add_loads(s_rate, rate);
     for (const Anchor& anchor : anchors_) {
@@ -156,11 +164,12 @@ class DrivenNetwork {
     SpringLaw law;
   };
 
-  std::vector<Point> of_all(Eigen::Vector3d (TimeCurve::*function)(double) const, double t) const {
+  using Function = Eigen::Vector3d (TimeCurve::*)(double, double) const;
+  std::vector<Point> of_all(Function function, const Time& time) const {
     std::vector<Point> all;
     all.reserve(curves_.size());
     for (const TimeCurve& curve : curves_) {
-      all.push_back((curve.*function)(std::isnan(t) ? 0 : t).template head<D>());
+      all.push_back((curve.*function)(time.t, time.within).template head<D>());
     }
     return all;
   }
@@ -186,7 +195,7 @@ class DrivenNetwork {
     }
     for (std::size_t k = 2; k < all.size(); ++k) all[k] *= factorial *= static_cast<double>(k);
     for (const PiecewiseCubic& table : curve.tables) {
-      const auto derivatives = table.derivatives(t);
+      const auto derivatives = table.derivatives(t, t);
       if (all.size() < derivatives.size()) all.resize(derivatives.size(), Eigen::Vector3d::Zero());
       for (std::size_t k = 0; k < derivatives.size(); ++k) all[k] += derivatives[k];
     }

@@ -35,6 +35,7 @@ class MassSpring final : public CapableSystem {
   using Block = Eigen::Matrix<double, D, D>;
   using Moved = typename SpringLists<D>::Moved;
   using Curves = std::vector<Point>;
+  using Time = typename DrivenNetwork<D>::Time;
 
  public:
   MassSpring(Network network, Forces forces)
@@ -43,7 +44,7 @@ class MassSpring final : public CapableSystem {
 
   double potential(const At& at) const override {
     const VecView& q = at.q;
-    const Curves curves = driven_.values(at.t);
+    const Curves curves = driven_.values(at);
     double v = constant_energy_ - weight_.dot(q) + driven_.load_energy(at);
     if (by_node_) {
       v += by_node_->half_sum_energies(at);
@@ -67,10 +68,10 @@ class MassSpring final : public CapableSystem {
     if (by_node_) {
       by_node_->sum_forces(at, f);
     } else {
-      const Curves curves = driven_.values(at.t);
+      const Curves curves = driven_.values(at);
       const Moved now{at.q, curves};
       f = weight_;
-      driven_.add_loads(at.t, f);
+      driven_.add_loads(at, f);
       springs_->add_forces(
           [&](const auto& spring) {
             return spring_force(spring.law, springs_->between(now, spring));
@@ -101,10 +102,10 @@ class MassSpring final : public CapableSystem {
 
   void mean_force(const At& start, const At& end, MutableVec f) const override {
     if (by_node_) return by_node_->sum_mean_forces(start, end, f);
-    const Curves curves = driven_.values(start.t);
+    const Curves curves = driven_.values(start);
     const Moved a{start.q, curves}, b{end.q, curves};
     f = weight_;
-    driven_.add_loads(start.t, f);
+    driven_.add_loads(start, f);
     springs_->add_forces(
         [&](const auto& spring) {
           return spring_discrete_gradient(spring.law, springs_->between(a, spring),
@@ -117,7 +118,7 @@ class MassSpring final : public CapableSystem {
 
   void weighted_stiffness(const At& at, double compression_weight,
                           SymmetricMatrix& k) const override {
-    const Curves curves = driven_.values(at.t);
+    const Curves curves = driven_.values(at);
     const Moved now{at.q, curves};
     const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
@@ -129,7 +130,7 @@ class MassSpring final : public CapableSystem {
   }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override {
-    const Curves curves = driven_.values(at.t);
+    const Curves curves = driven_.values(at);
     const Moved now{at.q, curves};
     const auto block = [](const SpringLaw& law, const Point& d) {
       return spring_material_stiffness(law, d);
@@ -149,7 +150,7 @@ class MassSpring final : public CapableSystem {
     if (!by_node_) return false;  // so few have their K at once
     sums.resize(size());
     by_node_->sum_stiffness_rows(at, sums);
-    const Curves curves = driven_.values(at.t);
+    const Curves curves = driven_.values(at);
     for (const auto& anchor : network_.anchors) {
       const Point d = between({at.q, curves}, anchor);
       layout_.add(-spring_stiffness(anchor.law, d).cwiseAbs().rowwise().sum(), anchor.i, sums);
@@ -181,8 +182,8 @@ class MassSpring final : public CapableSystem {
     if (!has_dashpots_) return {};
     const SpringLists<D>& springs = lists();
     const VecView q0 = rate.q0, q1 = rate.q1, q2 = rate.q2;
-    const Curves curves0 = driven_.values(rate.t0), curves1 = driven_.values(rate.t1),
-                 curves2 = driven_.values(rate.t2);
+    const Curves curves0 = driven_.values(Time(rate.t0)), curves1 = driven_.values(Time(rate.t1)),
+                 curves2 = driven_.values(Time(rate.t2));
     double power = 0;
     f.setZero();
     springs.add_forces(
@@ -234,7 +235,7 @@ class MassSpring final : public CapableSystem {
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
 
   bool is_linear_at(const At& at) const override {
-    const Curves curves = driven_.values(at.t);
+    const Curves curves = driven_.values(at);
     const signed char* direction = directions_.data();
     bool all = true;
     const SpringLists<D>& springs = lists();
@@ -249,7 +250,7 @@ class MassSpring final : public CapableSystem {
   // A network with rest lengths of zero has the same stiffness at every q.
   void assemble_laplacian(SymmetricMatrix& l) const override {
     const Vec anywhere = Vec::Zero(size());
-    const Curves curves = driven_.values(0);
+    const Curves curves = driven_.values(Time(0));
     for_stiffness().blocks.assemble({anywhere, curves}, l,
                                     [](const SpringLaw& law, const Point&) -> Block {
                                       return -law.stiffness * Block::Identity();
@@ -259,7 +260,7 @@ class MassSpring final : public CapableSystem {
   // A length of zero is a kink only on a line.
   Index kink_count() const override { return kinks_; }
   void kink_lengths(const At& at, MutableVec lengths) const override {
-    const Curves curves = driven_.values(at.t);
+    const Curves curves = driven_.values(at);
     Index i = 0;
     const SpringLists<D>& springs = lists();
     springs.for_each([&](const auto& spring) {
@@ -270,7 +271,7 @@ class MassSpring final : public CapableSystem {
   bool is_valid_at(const At& at) const override { return in_tension_.holds_at(placed(at)); }
   std::optional<double> end_of_validity(const State& from, const State& to) const override {
     const auto moving = [&](const State& state) {
-      return PlacedMotion<D>{placed(state), driven_.rates(state.t), state.v};
+      return PlacedMotion<D>{placed(state), driven_.rates(Time(state.t)), state.v};
     };
     return in_tension_.first_slack(mass(), from.t, moving(from), to.t, moving(to),
                                    [&](bool is_end, Vec& f) {
@@ -401,7 +402,7 @@ class MassSpring final : public CapableSystem {
   // Not for dashpots that vectors sum.
   void add_friction(const At& at, MutableVec f) const {
     if (has_dashpots_) {
-      const Curves curves = driven_.values(at.t), rates = driven_.rates(at.t);
+      const Curves curves = driven_.values(at), rates = driven_.rates(at);
       springs_->add_forces(
           [&](const auto& spring) {
             return dashpot_force(spring.law, springs_->between({at.q, curves}, spring),
@@ -490,7 +491,7 @@ class MassSpring final : public CapableSystem {
   Point between(const Moved& at, const Network::Anchor& anchor) const {
     return anchor.point.template head<D>() + at.of(anchor.curve) - layout_.at(at.q, anchor.i);
   }
-  Placed<D> placed(const At& at) const { return {layout_, at.q, driven_.values(at.t)}; }
+  Placed<D> placed(const At& at) const { return {layout_, at.q, driven_.values(at)}; }
 
   bool keeps_directions() const { return !directions_.empty(); }
   bool turns_over(const SpringLaw& law) const {

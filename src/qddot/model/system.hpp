@@ -79,11 +79,17 @@ struct At {
   // The same of `count` unknowns from the first one on.
   At segment(Index first, Index count) const {
     const bool has_v = v.size() > 0;
-    return {t, {q.data() + first, count}, {has_v ? v.data() + first : nullptr, has_v ? count : 0}};
+    At part{t, {q.data() + first, count}, {has_v ? v.data() + first : nullptr, has_v ? count : 0}};
+    part.within = within;
+    return part;
   }
 
   double t;
   VecView q, v;
+  // A time [s] in the same piece of a function of time that has corners, which is then continued to
+  // t; NaN: t itself, and behind a corner at t. Steps that end on a corner, and stages beyond it,
+  // belong to the piece before it.
+  double within = std::numeric_limits<double>::quiet_NaN();
 };
 
 class BesideForce;

@@ -70,11 +70,11 @@ PiecewiseCubic PiecewiseCubic::straight(std::vector<double> times, std::vector<V
   return {std::move(times), std::move(values), std::move(bend), true};
 }
 
-std::array<Vector, 4> PiecewiseCubic::derivatives(double t) const {
+std::array<Vector, 4> PiecewiseCubic::derivatives(double t, double within) const {
   const Vector none = Vector::Zero();
-  if (t < times_.front()) return {values_.front(), none, none, none};
-  if (t >= times_.back()) return {values_.back(), none, none, none};
-  const auto next = std::ranges::upper_bound(times_, t);
+  if (within < times_.front()) return {values_.front(), none, none, none};
+  if (within >= times_.back()) return {values_.back(), none, none, none};
+  const auto next = std::ranges::upper_bound(times_, within);
   const auto i = static_cast<std::size_t>(next - times_.begin()) - 1;
   const double h = times_[i + 1] - times_[i], x = t - times_[i];
   const Vector third = (bend_[i + 1] - bend_[i]) / h;
@@ -83,25 +83,21 @@ std::array<Vector, 4> PiecewiseCubic::derivatives(double t) const {
           slope + x * (bend_[i] + x / 2 * third), bend_[i] + x * third, third};
 }
 
-Vector PiecewiseCubic::at(double t) const { return derivatives(t)[0]; }
-
-Vector PiecewiseCubic::rate(double t) const { return derivatives(t)[1]; }
-
 PiecewiseCubic PiecewiseCubic::turned(const Eigen::Matrix3d& turn) const {
   return {times_, turned_all(values_, turn), turned_all(bend_, turn), is_straight_};
 }
 
-Vector TimeCurve::at(double t) const {
+Vector TimeCurve::at(double t, double within) const {
   Vector sum = Vector::Zero();
   for (std::size_t k = polynomial.size(); k-- > 0;) sum = polynomial[k] + t * sum;
   for (const Harmonic& one : harmonics)
     sum += std::sin(one.frequency * t + one.phase) * one.amplitude;
-  for (const PiecewiseCubic& table : tables) sum += table.at(t);
+  for (const PiecewiseCubic& table : tables) sum += table.at(t, within);
   for (const Own& function : own) sum += function.value(t);
   return sum;
 }
 
-Vector TimeCurve::rate(double t) const {
+Vector TimeCurve::rate(double t, double within) const {
   Vector sum = Vector::Zero();
   for (std::size_t k = polynomial.size(); k-- > 1;) {
     sum = static_cast<double>(k) * polynomial[k] + t * sum;
@@ -109,7 +105,7 @@ Vector TimeCurve::rate(double t) const {
   for (const Harmonic& one : harmonics) {
     sum += one.frequency * std::cos(one.frequency * t + one.phase) * one.amplitude;
   }
-  for (const PiecewiseCubic& table : tables) sum += table.rate(t);
+  for (const PiecewiseCubic& table : tables) sum += table.rate(t, within);
   for (const Own& function : own) sum += function.rate(t);
   return sum;
 }

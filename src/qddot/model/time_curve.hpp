@@ -21,13 +21,14 @@ class PiecewiseCubic {
   // Straight lines from value to value.
   static PiecewiseCubic straight(std::vector<double> times, std::vector<Vector> values);
 
-  Vector at(double t) const;
-  Vector rate(double t) const;  // its derivative; at a corner the one of the interval behind
+  // The value at t, on the piece that `within` is in (at a corner, the one behind it), continued.
+  Vector at(double t, double within) const { return derivatives(t, within)[0]; }
+  Vector rate(double t, double within) const { return derivatives(t, within)[1]; }
   const std::vector<double>& times() const { return times_; }
   const std::vector<Vector>& values() const { return values_; }
   bool is_straight() const { return is_straight_; }
-  // The derivatives 0 ... 3 on the interval that begins at or before t, at t.
-  std::array<Vector, 4> derivatives(double t) const;
+  // The derivatives 0 ... 3 at t, on that piece.
+  std::array<Vector, 4> derivatives(double t, double within) const;
   // The same values, each multiplied by a matrix.
   PiecewiseCubic turned(const Eigen::Matrix3d& turn) const;
 
@@ -71,8 +72,11 @@ struct TimeCurve {
   std::vector<PiecewiseCubic> tables{};
   std::vector<Own> own{};
 
-  Vector at(double t) const;
-  Vector rate(double t) const;
+  Vector at(double t) const { return at(t, t); }
+  Vector rate(double t) const { return rate(t, t); }
+  // The same on the pieces of tables that `within` is in, continued.
+  Vector at(double t, double within) const;
+  Vector rate(double t, double within) const;
   // The corners of its tables, ascending in each table.
   std::vector<Corner> corners() const;
   // Adds a constant.

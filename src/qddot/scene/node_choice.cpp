@@ -97,14 +97,26 @@ std::vector<std::size_t> chosen_nodes(const TomlTable& choice, const Scene& scen
   return nodes;
 }
 
-void add_loads(const TomlTable& source, std::span<const Group> groups, Scene& scene) {
+void add_loads(const TomlTable& source, std::span<const Group> groups, const CurveReader& curves,
+               Scene& scene) {
   for (const TomlTable& load : source.tables("load")) {
-    load.allow_keys({"min", "max", "nodes", "group", "dimension", "force", "total_force"});
+    load.allow_keys(
+        {"min", "max", "nodes", "group", "dimension", "force", "total_force", "force_in_time"});
     const std::vector<std::size_t> nodes = chosen_nodes(load, scene, groups);
-    const bool is_total = load.has("total_force");
-    if (is_total == load.has("force"))
+    const bool is_total = load.has("total_force"), is_driven = load.has("force_in_time");
+    if (is_total + load.has("force") + is_driven != 1)
       load.fail(is_total ? "total_force" : "force",
-                "allowed is exactly one of force, on each node, and total_force");
+                "allowed is exactly one of force, on each node, total_force, and force_in_time, on "
+                "each node");
+    if (is_driven) {
+      const int curve = curves.read(load, "force_in_time");
+      for (const std::size_t node : nodes) {
+        if (scene.nodes[node].curve >= 0)
+          load.fail("force_in_time", fmt::format("node {} has a curve already", node));
+        if (!scene.nodes[node].pinned) scene.nodes[node].curve = curve;
+      }
+      continue;
+    }
     Eigen::Vector3d force = load.vector(is_total ? "total_force" : "force", scene.dimension);
     if (is_total) force /= static_cast<double>(nodes.size());
     for (const std::size_t node : nodes) scene.nodes[node].load += force;

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "qddot/scene/curve_reader.hpp"
 #include "qddot/scene/mesh/mesh.hpp"
 #include "qddot/scene/scene.hpp"
 #include "qddot/scene/toml_table.hpp"
@@ -17,7 +18,9 @@ std::vector<std::size_t> chosen_nodes(const TomlTable& choice, const Scene& scen
                                       std::span<const mesh::Group> groups);
 
 // Adds the loads of the tables `load` of a [mesh] or a [generator] to the scene's nodes: `force`
-// [N] on each chosen node, or equal shares of `total_force` [N].
-void add_loads(const TomlTable& source, std::span<const mesh::Group> groups, Scene& scene);
+// [N] on each chosen node, or equal shares of `total_force` [N]; or the curve `force_in_time` [N] on
+// each that is not pinned.
+void add_loads(const TomlTable& source, std::span<const mesh::Group> groups,
+               const CurveReader& curves, Scene& scene);
 
 }  // namespace qddot

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "qddot/scene/curve_reader.hpp"
 #include "qddot/scene/generators.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/mesh/mesh.hpp"
@@ -16,14 +17,20 @@
 namespace qddot {
 namespace {
 
-Node node_in(const TomlTable& table, int dimension) {
-  table.allow_keys({"position", "velocity", "mass", "pinned", "load"});
+Node node_in(const TomlTable& table, int dimension, const CurveReader& curves) {
+  table.allow_keys(
+      {"position", "velocity", "mass", "pinned", "load", "motion", "load_in_time"});
   Node node;
   node.position = table.vector("position", dimension);
   node.velocity = table.vector_or_zero("velocity", dimension);
   node.pinned = table.flag_or_false("pinned");
   node.load = table.vector_or_zero("load", dimension);
   if (!node.pinned || table.has("mass")) node.mass = table.number("mass", not_negative);
+  const char* wrong = node.pinned ? "load_in_time" : "motion";
+  if (table.has(wrong))
+    table.fail(wrong, node.pinned ? "a pin carries it; allowed is motion"
+                                  : "it is for pinned nodes; allowed is load_in_time");
+  node.curve = curves.read(table, node.pinned ? "motion" : "load_in_time");
   return node;
 }
 
@@ -38,13 +45,14 @@ Spring spring_in(const TomlTable& table, const std::vector<Node>& nodes) {
                   .damping = table.number_or(0, "damping", not_negative)}};
 }
 
-void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits, Scene& scene) {
+void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits,
+                           const CurveReader& curves, Scene& scene) {
   file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "air_damping",
-                   "damping_time", "nodes", "springs"});
-  scene.dimension = file.integer("dimension", 1, 3);
+                   "damping_time", "gravity_in_time", "curves", "nodes", "springs"});
   const std::vector<TomlTable> nodes = file.tables("nodes"), springs = file.tables("springs");
   require_within(limits, {nodes.size(), springs.size()}, file.place());
-  for (const TomlTable& table : nodes) scene.nodes.push_back(node_in(table, scene.dimension));
+  for (const TomlTable& table : nodes) 
+    scene.nodes.push_back(node_in(table, scene.dimension, curves));
   if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
   for (const TomlTable& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));
 }
@@ -61,16 +69,36 @@ std::string generator_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Scene generated(const TomlTable& table, const SceneLimits& limits) {
+// Moves the pinned nodes of each choice.
+void move_supports(const TomlTable& source, const CurveReader& curves, Scene& scene) {
+  for (const TomlTable& motion : source.tables("motion")) {
+    motion.allow_keys({"min", "max", "nodes", "curve"});
+    const int curve = curves.read(motion, "curve");
+    if (curve < 0) motion.refuse("curve", "tables and names of [[curves]]");
+    bool any = false;
+    for (const std::size_t node : chosen_nodes(motion, scene, {})) {
+      if (!scene.nodes[node].pinned) continue;
+      scene.nodes[node].curve = curve;
+      any = true;
+    }
+    if (!any) motion.fail("curve", "none of the chosen nodes is pinned; allowed are pinned ones");
+  }
+}
+
+// The generator's scene. Curves are read when it is drawn, as its dimension is known then.
+Scene generated(const TomlTable& file, const TomlTable& table, const SceneLimits& limits) {
   const std::string kind = table.text("kind");
   const Generator* generator = find_generator(kind);
   if (!generator) table.refuse("kind", generator_names());
   GeneratorValues values;
   for (const std::string& key : table.keys()) {
-    if (key != "kind" && key != "load") values[key] = table.number(key);
+    if (key != "kind" && key != "load" && key != "motion") values[key] = table.number(key);
   }
   Scene scene = generate(*generator, values, table.place(), limits);
-  add_loads(table, {}, scene);
+  const CurveReader curves(file, scene);
+  scene.gravity_curve = curves.read(file, "gravity_in_time");
+  add_loads(table, {}, curves, scene);
+  move_supports(table, curves, scene);
   return scene;
 }
 
@@ -145,17 +173,22 @@ Scene parse_scene(const std::string& text, const std::string& path,
   require_one_origin(file);
   Scene scene;
   if (file.has("generator")) {
-    file.allow_keys(
-        {"name", "until", "start", "stiff_above", "air_damping", "damping_time", "generator"});
-    scene = generated(file.table("generator"), limits);
+    file.allow_keys({"name", "until", "start", "stiff_above", "air_damping", "damping_time",
+                     "gravity_in_time", "curves", "generator"});
+    scene = generated(file, file.table("generator"), limits);
   } else if (file.has("mesh")) {
     file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "air_damping",
-                     "damping_time", "mesh"});
+                     "damping_time", "gravity_in_time", "curves", "mesh"});
     if (file.has("dimension")) file.integer("dimension", 3, 3);
-    add_mesh(file.table("mesh"), folder, read, limits, scene);
+    const CurveReader curves(file, scene);
+    scene.gravity_curve = curves.read(file, "gravity_in_time");
+    add_mesh(file.table("mesh"), folder, read, limits, curves, scene);
     add_damping(file.table("mesh"), scene);
   } else {
-    add_nodes_and_springs(file, limits, scene);
+    scene.dimension = file.integer("dimension", 1, 3);
+    const CurveReader curves(file, scene);
+    scene.gravity_curve = curves.read(file, "gravity_in_time");
+    add_nodes_and_springs(file, limits, curves, scene);
   }
   scene.name = file.has("name") ? file.text("name") : std::filesystem::path(path).stem().string();
   if (file.has("until")) scene.until = file.number("until", positive);

@@ -69,6 +69,20 @@ class TomlText {
     add("]\n");
   }
 
+  void number(double value) { add_number(value); }
+  // Vectors in brackets, each of `size` components.
+  void list(const std::vector<Eigen::Vector3d>& values, int size) {
+    add("[");
+    for (const Eigen::Vector3d& value : values) {
+      for (int k = 0; k < size; ++k) {
+        add(k == 0 ? "[" : ", ");
+        add_number(value[k]);
+      }
+      add("], ");
+    }
+    add("]");
+  }
+
   std::size_t size() const { return text_.size(); }
   std::string text() const { return fmt::to_string(text_); }
 
@@ -103,6 +117,34 @@ void add_node(const Node& node, int dimension, TomlText& out) {
   out.line("mass", node.mass);
   if (node.pinned) out.add("pinned = true\n");
   if (!is_plain_zero(node.load)) out.line("load", node.load, dimension);
+  if (node.curve >= 0) {
+    out.line(node.pinned ? "motion" : "load_in_time", fmt::format("curve {}", node.curve));
+  }
+}
+
+// Under the name "curve <number>".
+void add_curve(const TimeCurve& curve, int number, int dimension, TomlText& out) {
+  out.add("\n[[curves]]\n");
+  out.line("name", fmt::format("curve {}", number));
+  if (!curve.polynomial.empty()) {
+    out.add("polynomial = ");
+    out.list(curve.polynomial, dimension);
+    out.add("\n");
+  }
+  for (const TimeCurve::Harmonic& harmonic : curve.harmonics) {
+    out.add("[[curves.harmonics]]\n");
+    out.line("amplitude", harmonic.amplitude, dimension);
+    out.line("angular_frequency", harmonic.frequency);
+    out.line("phase", harmonic.phase);
+  }
+  for (const PiecewiseCubic& table : curve.tables) {
+    out.add("[curves.table]\ntimes = [");
+    for (const double t : table.times()) out.number(t), out.add(", ");
+    out.add("]\nvalues = ");
+    out.list(table.values(), dimension);
+    out.add("\n");
+    out.line("interpolation", table.is_straight() ? "linear" : "spline");
+  }
 }
 
 void add_spring(const Spring& spring, TomlText& out) {
@@ -111,6 +153,15 @@ void add_spring(const Spring& spring, TomlText& out) {
   out.line("rest_length", spring.law.rest_length);
   if (!is_plain_zero(spring.law.quartic)) out.line("quartic", spring.law.quartic);
   if (!is_plain_zero(spring.law.damping)) out.line("damping", spring.law.damping);
+}
+
+// A file has no functions of the caller's own, and one table a curve.
+void require_writable(const Scene& scene, std::size_t curve) {
+  if (scene.curves[curve].own.empty() && scene.curves[curve].tables.size() <= 1) return;
+  throw InvalidInput(fmt::format(
+      "scene {}: curves[{}] has functions of the caller's own, or several tables; allowed in a "
+      "scene file are polynomials, harmonics and one table",
+      shown(scene.name), curve));
 }
 
 }  // namespace
@@ -130,6 +181,13 @@ std::string to_toml(const Scene& scene, std::size_t most) {
   out.line("start", scene.starts_at_equilibrium ? "equilibrium" : "drawn");
   if (scene.stiff_above) out.line("stiff_above", *scene.stiff_above);
   if (!is_plain_zero(scene.air_damping)) out.line("air_damping", scene.air_damping);
+  if (scene.gravity_curve >= 0)
+    out.line("gravity_in_time", fmt::format("curve {}", scene.gravity_curve));
+  for (std::size_t i = 0; i < scene.curves.size(); ++i) {
+    require_writable(scene, i);
+    add_curve(scene.curves[i], static_cast<int>(i), scene.dimension, out);
+    require_readable();
+  }
   for (const Node& node : scene.nodes) {
     add_node(node, scene.dimension, out);
     require_readable();

@@ -31,6 +31,18 @@ std::string written(const toml::node& node) {
   return out.str();
 }
 
+// An array of so many finite numbers as a vector.
+std::optional<Eigen::Vector3d> vector_in(const toml::array* array, int size) {
+  if (!array || array->size() != static_cast<std::size_t>(size)) return {};
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  for (int k = 0; k < size; ++k) {
+    const auto value = finite_number((*array)[static_cast<std::size_t>(k)]);
+    if (!value) return {};
+    x[k] = *value;
+  }
+  return x;
+}
+
 }  // namespace
 
 std::optional<double> finite_number(const toml::node& node) {
@@ -60,16 +72,37 @@ double TomlTable::number(std::string_view key, const Range& range) const {
 }
 
 Eigen::Vector3d TomlTable::vector(std::string_view key, int size) const {
-  Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  const toml::array* array = table_[key].as_array();
-  bool good = array && array->size() == static_cast<std::size_t>(size);
-  for (int k = 0; good && k < size; ++k) {
-    const auto value = finite_number((*array)[static_cast<std::size_t>(k)]);
-    x[k] = value.value_or(0);
-    good = value.has_value();
+  const auto x = vector_in(table_[key].as_array(), size);
+  if (!x) refuse(key, fmt::format("arrays of {} finite number{}", size, size == 1 ? "" : "s"));
+  return *x;
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key) const {
+  std::vector<double> all;
+  if (const toml::array* array = table_[key].as_array()) {
+    for (const toml::node& entry : *array) {
+      const auto value = finite_number(entry);
+      if (!value) refuse(key, "arrays of finite numbers");
+      all.push_back(*value);
+    }
   }
-  if (!good) refuse(key, fmt::format("arrays of {} finite number{}", size, size == 1 ? "" : "s"));
-  return x;
+  if (all.empty()) refuse(key, "arrays of finite numbers");
+  return all;
+}
+
+std::vector<Eigen::Vector3d> TomlTable::vectors(std::string_view key, int size) const {
+  std::vector<Eigen::Vector3d> all;
+  const std::string allowed =
+      fmt::format("arrays of arrays of {} finite number{}", size, size == 1 ? "" : "s");
+  if (const toml::array* array = table_[key].as_array()) {
+    for (const toml::node& entry : *array) {
+      const auto x = vector_in(entry.as_array(), size);
+      if (!x) refuse(key, allowed);
+      all.push_back(*x);
+    }
+  }
+  if (all.empty()) refuse(key, allowed);
+  return all;
 }
 
 int TomlTable::integer(std::string_view key, int low, int high) const {

@@ -47,6 +47,9 @@ class TomlTable {
   Eigen::Vector3d vector_or_zero(std::string_view key, int size) const {
     return has(key) ? vector(key, size) : Eigen::Vector3d::Zero();
   }
+  // Any number of finite numbers, and of such vectors; one at least.
+  std::vector<double> numbers(std::string_view key) const;
+  std::vector<Eigen::Vector3d> vectors(std::string_view key, int size) const;
   // An integer in [low, high].
   int integer(std::string_view key, int low, int high) const;
   // Some of `count` nodes, by their indices; one at least.

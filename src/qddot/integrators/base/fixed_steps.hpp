@@ -92,9 +92,9 @@ class FixedSteps final : public Stepper {
  private:
   void show(X& x, bool may_evaluate, State& state) {
     if constexpr (!is_state) {
-      formula_.show(x, may_evaluate, state);
       state.t = x.t;
       state.work = x.work;
+      formula_.show(x, may_evaluate, state);
     }
   }
   const State& shown(bool may_evaluate) {

@@ -167,7 +167,7 @@ template <class Damping>
 double SpringsByNode<D>::sum_forces(const At& at, MutableVec f, BesideForce* beside,
                                     const Damping& damped) const {
   const VecView& q = at.q;
-  const Offset weight = offset(at.t);
+  const Offset weight = offset(at);
   const SpringTable springs = table();
   const Positions positions = memory();
   [[maybe_unused]] DashpotTable dashpots{};
@@ -177,13 +177,13 @@ double SpringsByNode<D>::sum_forces(const At& at, MutableVec f, BesideForce* bes
     dashpots = dashpot_table();
     velocities = memory(1);
     none = no_offset(damped.friction);
-    place_velocities_of_points(velocities, at.t);
+    place_velocities_of_points(velocities, at);
   }
   const int count = parts_.count();
   thread_local Vec of_parts;
   if (of_parts.size() < count) of_parts.resize(count);
   double* const sums = of_parts.data();
-  place_points(positions, at.t);
+  place_points(positions, at);
 
   const auto place = [&](int from, int end) {
     if (from == end) return;
@@ -256,17 +256,17 @@ double SpringsByNode<D>::half_sum_energies(const At& at) const {
 
 template <int D>
 void SpringsByNode<D>::sum_mean_forces(const At& a, const At& b, MutableVec f) const {
-  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(a.t), f.data(), 0,
+  kernels_->mean_force(table(), placed(a, 0), placed(b, 1), offset(a), f.data(), 0,
                        slices_.count());
 }
 
 template <int D>
-Offset SpringsByNode<D>::offset(double t) const {
+Offset SpringsByNode<D>::offset(const At& at) const {
   if (!driven_.has_loads())
     return {weight_.data(), has_same_weights_ ? slice_weight_.data() : nullptr};
   thread_local Vec weight;
   weight = weight_;
-  driven_.add_loads(t, weight);
+  driven_.add_loads(at, weight);
   return {weight.data(), nullptr};
 }
 
@@ -293,7 +293,7 @@ void SpringsByNode<D>::multiply_stiffness(const At& at, const VecView& x, Mutabl
 template <int D>
 void SpringsByNode<D>::sum_friction(const At& at, MutableVec friction) const {
   const Positions velocities = placed_beside(at.v);
-  place_velocities_of_points(velocities, at.t);
+  place_velocities_of_points(velocities, at);
   kernels_->friction(table(), dashpot_table(), placed(at, 0), velocities, no_offset(friction),
                      friction.data(), 0, slices_.count());
 }
@@ -318,9 +318,9 @@ void SpringsByNode<D>::place_resting_points(const Positions& velocities) const {
 }
 
 template <int D>
-void SpringsByNode<D>::place_velocities_of_points(const Positions& velocities, double t) const {
+void SpringsByNode<D>::place_velocities_of_points(const Positions& velocities, const At& at) const {
   place_resting_points(velocities);
-  move_points(velocities, driven_.rates(t));
+  move_points(velocities, driven_.rates(at));
 }
 
 template <int D>
@@ -332,7 +332,7 @@ void SpringsByNode<D>::sum_stiffness_rows(const At& at, MutableVec sums) const {
 template <int D>
 Positions SpringsByNode<D>::placed(const At& at, int which) const {
   const Positions positions = memory(which);
-  place_points(positions, at.t);
+  place_points(positions, at);
   kernels_->place(table(), at.q.data(), positions, 0, slices_.count());
   place_images(positions, 0, parts_.count());
   return positions;
@@ -349,10 +349,10 @@ Positions SpringsByNode<D>::memory(int which) const {
 }
 
 template <int D>
-void SpringsByNode<D>::place_points(const Positions& positions, double t) const {
+void SpringsByNode<D>::place_points(const Positions& positions, const At& at) const {
   int place = slices_.rows();
   for (const auto& point : points_) place_extra(positions, place++, point);
-  move_points(positions, driven_.values(t));
+  move_points(positions, driven_.values(at));
 }
 
 template <int D>

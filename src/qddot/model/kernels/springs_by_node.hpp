@@ -81,7 +81,7 @@ class SpringsByNode {
 
   // The weight as kernels read it: 24 numbers in place of n if it is the same for all nodes. With
   // driven loads, it is this thread's until the next call.
-  Offset offset(double t) const;
+  Offset offset(const At& at) const;
   // Zeros. They are written to `numbers` (n) as well, if they are read there.
   Offset no_offset(MutableVec numbers) const;
   DashpotTable dashpot_table() const;
@@ -93,10 +93,10 @@ class SpringsByNode {
   Positions placed_beside(const VecView& x) const;
   // Places the points that are no nodes: those that are fixed, and the images of parts [from, end),
   // whose slices must have their places.
-  void place_points(const Positions& positions, double t) const;
+  void place_points(const Positions& positions, const At& at) const;
   void place_resting_points(const Positions& velocities) const;
-  // The velocities of points; those of moving ones at t.
-  void place_velocities_of_points(const Positions& velocities, double t) const;
+  // The velocities of points that rest or move.
+  void place_velocities_of_points(const Positions& velocities, const At& at) const;
   // Adds the vectors of all curves, if there are any, to what is placed at moving points.
   void move_points(const Positions& positions,
                    const std::vector<Eigen::Matrix<double, D, 1>>& by) const;
@@ -143,7 +143,7 @@ void SpringsByNode<D>::for_slices(const At& at, const Action& action) const {
   const Positions positions = memory();
   const SpringTable springs = table();
   const int count = slices_.count();
-  place_points(positions, at.t);
+  place_points(positions, at);
   if (!uses_threads()) {
     kernels_->place(springs, at.q.data(), positions, 0, count);
     place_images(positions, 0, parts_.count());

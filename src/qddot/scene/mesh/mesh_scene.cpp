@@ -177,16 +177,19 @@ std::string parts_sentence(const std::string& file, const Scene& scene) {
                                  doubled == 1 ? "1 vertex" : fmt::format("{} vertices", doubled)));
 }
 
-void pin(const TomlTable& choice, const Mesh& mesh, Scene& scene) {
-  choice.allow_keys({"min", "max", "nodes", "group", "dimension"});
-  for (const std::size_t node : chosen_nodes(choice, scene, mesh.groups))
+void pin(const TomlTable& choice, const Mesh& mesh, const CurveReader& curves, Scene& scene) {
+  choice.allow_keys({"min", "max", "nodes", "group", "dimension", "motion"});
+  const int curve = curves.read(choice, "motion");
+  for (const std::size_t node : chosen_nodes(choice, scene, mesh.groups)) {
     scene.nodes[node].pinned = true;
+    if (curve >= 0) scene.nodes[node].curve = curve;
+  }
 }
 
 }  // namespace
 
 void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const TextSource& read,
-              const SceneLimits& limits, Scene& scene) {
+              const SceneLimits& limits, const CurveReader& curves, Scene& scene) {
   table.allow_keys({"file", "scale", "rotation", "shift", "weld", "velocity", "stiffness",
                     "bending_stiffness", "node_mass", "total_mass", "density", "pin", "load",
                     "air_damping", "damping_time"});
@@ -220,8 +223,8 @@ void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const
   add_springs(mesh.edges, stiffness, scene);
   add_springs(bending, bending_stiffness, scene);
   scene.faces = std::move(mesh.faces);
-  for (const TomlTable& choice : table.tables("pin")) pin(choice, mesh, scene);
-  add_loads(table, mesh.groups, scene);
+  for (const TomlTable& choice : table.tables("pin")) pin(choice, mesh, curves, scene);
+  add_loads(table, mesh.groups, curves, scene);
   if (const std::string parts = parts_sentence(file, scene); !parts.empty())
     scene.warnings.push_back(parts);
 }
