@@ -23,6 +23,42 @@ inline Quadruple plain_root(Quadruple x) {
   return s;
 }
 
+inline double plain_sine(double x) { return std::sin(x); }
+inline long double plain_sine(long double x) { return std::sin(x); }
+inline Quadruple plain_sine(Quadruple x) { return std::sin(static_cast<long double>(x)); }
+
+// A component of a curve of polynomials and harmonics at t, and of its derivative.
+template <class Real>
+struct PlainCurve {
+  Real value = 0, rate = 0;
+
+  PlainCurve(const TimeCurve& curve, Eigen::Index c, Real t) {
+    for (std::size_t k = curve.polynomial.size(); k-- > 0;) {
+      rate = value + t * rate;
+      value = Real(curve.polynomial[k][c]) + t * value;
+    }
+    const Real quarter = std::acos(-1.0L) / 2;
+    for (const TimeCurve::Harmonic& harmonic : curve.harmonics) {
+      const Real w = harmonic.frequency, turned = w * t + Real(harmonic.phase);
+      value += Real(harmonic.amplitude[c]) * plain_sine(turned);
+      rate += Real(harmonic.amplitude[c]) * w * plain_sine(turned + quarter);
+    }
+  }
+};
+
+// The powers of damping and driving [W], or the energies that they took and gave [J].
+template <class Real>
+struct PlainWork {
+  Real dissipated = 0, driven = 0;
+
+  friend PlainWork operator+(const PlainWork& a, const PlainWork& b) {
+    return {a.dissipated + b.dissipated, a.driven + b.driven};
+  }
+  friend PlainWork operator*(Real s, const PlainWork& a) {
+    return {s * a.dissipated, s * a.driven};
+  }
+};
+
 // The start of a scene in Real numbers, three coordinates a node; pinned nodes rest.
 template <class Real>
 std::vector<Real> plain_positions(const Scene& scene) {
@@ -51,7 +87,10 @@ class PlainModel {
   using Vector = std::vector<Real>;
 
   explicit PlainModel(const Scene& scene)
-      : scene_(scene), has_loads_(has_loads(scene)), is_damped_(qddot::is_damped(scene)) {
+      : scene_(scene),
+        has_loads_(has_loads(scene)),
+        is_damped_(qddot::is_damped(scene)),
+        is_driven_(qddot::is_driven(scene)) {
     if (is_far(scene)) std::copy_n(scene.nodes[0].position.data(), 3, origin_.begin());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
       if (!scene.nodes[i].pinned && scene.nodes[i].mass == 0) massless_.push_back(i);
@@ -88,14 +127,48 @@ class PlainModel {
   }
 
   bool is_damped() const { return is_damped_; }
+  bool is_driven() const { return is_driven_; }
+
+  // Puts supports that move where they are at t [s], with their velocities. x is from origin().
+  void place_supports(Real t, Vector& x, Vector& v) const {
+    for_curves([&](std::size_t i, const Node& node, const TimeCurve& curve) {
+      for (std::size_t c = 0; c < 3 && node.pinned; ++c) {
+        const auto axis = static_cast<Eigen::Index>(c);
+        const PlainCurve<Real> support(curve, axis, t);
+        x[3 * i + c] = Real(node.position[axis]) - origin_[c] + support.value;
+        v[3 * i + c] = support.rate;
+      }
+    });
+  }
+  // Adds the loads that change, and gravity that does, at t to f.
+  void add_driven_loads(Real t, Vector& f) const {
+    for_loads([&](std::size_t i, Real factor, const TimeCurve& curve) {
+      for (std::size_t c = 0; c < 3; ++c)
+        f[3 * i + c] += factor * PlainCurve<Real>(curve, static_cast<Eigen::Index>(c), t).value;
+    });
+  }
+  // Their potential energy [J], or its rate of change at constant x [W].
+  Real energy_of_driven_loads(Real t, const Vector& x, bool is_rate) const {
+    Real sum = 0;
+    for_loads([&](std::size_t i, Real factor, const TimeCurve& curve) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto axis = static_cast<Eigen::Index>(c);
+        const PlainCurve<Real> load(curve, axis, t);
+        const Real moved = x[3 * i + c] + origin_[c] - Real(scene_.nodes[i].position[axis]);
+        sum -= factor * (is_rate ? load.rate : load.value) * moved;
+      }
+    });
+    return sum;
+  }
   // Adds the forces of dashpots and air to f, and returns the power that they take [W]: a dashpot
   // pulls its ends together by c l' along it, and of rest or length zero by c times the rate at
   // which they part.
   Real add_friction(const Vector& x, const Vector& v, Vector& f) const {
     Real power = 0;
     for (const Spring& spring : scene_.springs) {
-      if (spring.law.damping == 0) continue;
       const auto [i, j] = spring.nodes;
+      const bool moves = !scene_.nodes[i].pinned || !scene_.nodes[j].pinned;
+      if (spring.law.damping == 0 || !moves) continue;
       Real d[3], w[3], along = 0;
       const Real l2 = squared_length(spring, x, d);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -134,6 +207,24 @@ class PlainModel {
     return power;
   }
 
+  // The same at t [s] with friction and driving, whose powers are returned. Supports must be in
+  // their places. The force on a support is that which it does not follow.
+  PlainWork<Real> acceleration(Real t, const Vector& x, const Vector& v, Vector& a) const {
+    forces_without_weights(x, a);
+    PlainWork<Real> power;
+    power.dissipated = add_friction(x, v, a);
+    if (is_driven_) {
+      for_curves([&](std::size_t i, const Node& node, const TimeCurve&) {
+        for (std::size_t c = 0; c < 3 && node.pinned; ++c)
+          power.driven -= a[3 * i + c] * v[3 * i + c];
+      });
+      power.driven += energy_of_driven_loads(t, x, true);
+      add_driven_loads(t, a);
+    }
+    divide_by_masses(a);
+    return power;
+  }
+
   // 1/2 v'Mv + V [J]; weights and loads of pinned nodes do not count. x is from zero.
   Real energy(const Vector& x, const Vector& v) const {
     Real sum = 0;
@@ -159,6 +250,27 @@ class PlainModel {
   bool place_massless(Vector& x) const;
 
  private:
+  // Calls see(i, node, its curve) for each node that has one.
+  template <class See>
+  void for_curves(const See& see) const {
+    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+      const Node& node = scene_.nodes[i];
+      if (node.curve >= 0) see(i, node, scene_.curves[static_cast<std::size_t>(node.curve)]);
+    }
+  }
+  // Calls see(i, factor, curve) for each force factor curve(t) on a free node.
+  template <class See>
+  void for_loads(const See& see) const {
+    for_curves([&](std::size_t i, const Node& node, const TimeCurve& curve) {
+      if (!node.pinned) see(i, Real(1), curve);
+    });
+    if (scene_.gravity_curve < 0) return;
+    for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+      const Node& node = scene_.nodes[i];
+      if (!node.pinned)
+        see(i, Real(node.mass), scene_.curves[static_cast<std::size_t>(scene_.gravity_curve)]);
+    }
+  }
   // f/m + g in the place of f.
   void divide_by_masses(Vector& f) const {
     for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
@@ -195,7 +307,7 @@ class PlainModel {
   }
 
   Scene scene_;
-  bool has_loads_, is_damped_;
+  bool has_loads_, is_damped_, is_driven_;
   std::vector<std::size_t> massless_;
   std::array<Real, 3> origin_{};
 };

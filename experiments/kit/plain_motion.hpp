@@ -11,20 +11,20 @@
 namespace qddot {
 inline namespace kit {
 
-// Positions [m] and velocities [m/s] of all nodes at the time t [s], and the energy that damping
-// has taken [J].
+// Positions [m] and velocities [m/s] of all nodes at the time t [s], and the energies that damping
+// has taken and driving has given [J].
 template <class Real>
 struct PlainState {
   Real t = 0;
   std::vector<Real> x, v;
-  Real dissipated = 0;
+  PlainWork<Real> work{};
 };
 
 // The motion of a scene's drawn nodes by extrapolation (Hairer, Norsett, Wanner, Solving Ordinary
 // Differential Equations I, II.14). Verlet's method makes a long step H of n = 1, 2, ... short
 // ones. Its error is in even powers of 1/n; Aitken and Neville's scheme removes it up to order 24
 // (16 in long double). H is chosen so that the last two orders agree to `tolerance` of the motion's
-// size. If the model is damped, Gragg's method makes the short steps, 2n of them: its error is in
+// size. If the model is damped or driven, Gragg's method makes the short steps, 2n of them: its error is in
 // even powers, too, for forces that depend on velocities. A model of other forces has the functions
 // of PlainModel that are called here; is_damped() and what that leads to may be missing.
 template <class Real, class Model = PlainModel<Real>>
@@ -34,6 +34,9 @@ class PlainMotion {
   PlainMotion(Model model, Real tolerance) : model_(std::move(model)), tolerance_(tolerance) {
     now_ = {0, model_.positions(), model_.velocities()};
     for (std::size_t c = 0; c < now_.x.size(); ++c) now_.x[c] -= model_.origin()[c % 3];
+    if constexpr (requires { model_.is_driven(); }) {
+      if (model_.is_driven()) model_.place_supports(0, now_.x, now_.v);
+    }
     stands_ = model_.place_massless(now_.x);
     const Scene& scene = model_.scene();
     // Velocities of massless nodes follow from the others' and are left at zero.
@@ -81,7 +84,7 @@ class PlainMotion {
         forced_in_a_row = ratio > 1 ? forced_in_a_row + 1 : 0;
         if (forced_in_a_row > most_forced_in_a_row) return false;
         forced_ += ratio > 1;
-        now_.x = x_[0], now_.v = v_[0], now_.dissipated = dissipated_[0];
+        now_.x = x_[0], now_.v = v_[0], now_.work = work_[0];
         now_.t = is_last ? until : now_.t + h;
         if (!model_.place_massless(now_.x)) return false;
       }
@@ -112,9 +115,9 @@ class PlainMotion {
       const Real s = h / Real(count);
       Vector x = now_.x, v = now_.v;
       if (is_damped()) {
-        const std::optional<Real> dissipated = gragg_steps(s / 2, 2 * count, x, v);
-        if (!dissipated) return {};
-        dissipated_[j] = *dissipated;
+        const std::optional<PlainWork<Real>> work = gragg_steps(s / 2, 2 * count, x, v);
+        if (!work) return {};
+        work_[j] = *work;
       } else {
         for (std::size_t c = 0; c < n; ++c) v[c] += s / 2 * a0[c];
         for (int k = 1; k <= count; ++k) {
@@ -130,7 +133,7 @@ class PlainMotion {
       for (int k = j - 1; k >= 0; --k) {
         if (k == 0) last_x = x_[1], last_v = v_[1];
         const Real weight = Real((j + 1) * (j + 1)) / Real((k + 1) * (k + 1)) - 1;
-        dissipated_[k] = dissipated_[k + 1] + (dissipated_[k + 1] - dissipated_[k]) / weight;
+        work_[k] = work_[k + 1] + 1 / weight * (work_[k + 1] + Real(-1) * work_[k]);
         for (std::size_t c = 0; c < n; ++c) {
           x_[k][c] = x_[k + 1][c] + (x_[k + 1][c] - x_[k][c]) / weight;
           v_[k][c] = v_[k + 1][c] + (v_[k + 1][c] - v_[k][c]) / weight;
@@ -159,42 +162,46 @@ class PlainMotion {
   }
 
   bool is_damped() const {
-    if constexpr (requires { model_.is_damped(); }) return model_.is_damped();
+    if constexpr (requires { model_.is_damped(); })
+      return model_.is_damped() || model_.is_driven();
     return false;
   }
 
-  // Makes `count` steps s of Gragg's method with its last smoothing, from x and v. Returns the
-  // energy that friction has taken by then; empty if a massless node found no place.
-  std::optional<Real> gragg_steps(Real s, int count, Vector& x, Vector& v) const {
+  // Makes `count` steps s of Gragg's method with its last smoothing, from x and v. Returns the work
+  // by then; empty if a massless node found no place.
+  std::optional<PlainWork<Real>> gragg_steps(Real s, int count, Vector& x, Vector& v) const {
     if constexpr (!requires { model_.is_damped(); })
       return {};
     else {
       const std::size_t n = x.size();
       Vector last_x = x, last_v = v, a(n);
-      Real dissipated = now_.dissipated, last_dissipated = dissipated;
+      PlainWork<Real> work = now_.work, last_work = work;
       for (int k = 0; k <= count; ++k) {
-        const Real power = model_.acceleration(x, v, a);
+        const Real t = now_.t + Real(k) * s;
+        if (model_.is_driven()) model_.place_supports(t, x, v);
+        const PlainWork<Real> power = model_.acceleration(t, x, v, a);
         const Real part = k == 0 || k == count ? s : 2 * s;
         // y_{k+1} = y_{k-1} + 2 s F(y_k); the first is Euler's, the last (y_n + y_{n-1} + s F)/2.
         for (std::size_t c = 0; c < n; ++c) {
           last_x[c] += part * v[c];
           last_v[c] += part * a[c];
         }
-        last_dissipated += part * power;
+        last_work = last_work + part * power;
         if (k == count) {
           for (std::size_t c = 0; c < n; ++c) {
             x[c] = (x[c] + last_x[c]) / 2;
             v[c] = (v[c] + last_v[c]) / 2;
           }
-          dissipated = (dissipated + last_dissipated) / 2;
+          work = Real(0.5) * (work + last_work);
+          if (model_.is_driven()) model_.place_supports(t, x, v);
         } else {
           std::swap(x, last_x);
           std::swap(v, last_v);
-          std::swap(dissipated, last_dissipated);
+          std::swap(work, last_work);
         }
         if (!model_.place_massless(x)) return {};
       }
-      return dissipated;
+      return work;
     }
   }
 
@@ -210,7 +217,7 @@ class PlainMotion {
   bool stands_ = false;
   int forced_ = 0, tried_ = 0;
   Vector x_[levels], v_[levels];
-  Real dissipated_[levels] = {};
+  PlainWork<Real> work_[levels] = {};
 };
 
 template <template <class> class Model, class Real>

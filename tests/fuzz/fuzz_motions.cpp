@@ -16,26 +16,41 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "qddot/scene/scene_file.hpp"
 #include "tests/independent/comparison.hpp"
 #include "tests/independent/random_scene.hpp"
 
 namespace qddot {
 namespace {
 
+struct Choice {
+  std::string only;
+  bool is_damped = false, is_driven = false, is_printed = false;
+
+  RandomScene scene(std::uint64_t seed) const {
+    if (is_driven) return driven_scene(seed);
+    return is_damped ? damped_scene(seed) : random_scene(seed);
+  }
+};
+
 struct Tally {
   std::int64_t scenes = 0, unknown = 0, disagreeing = 0;
 };
 
 int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, std::uint64_t methods_every,
-         const std::string& only, bool is_damped) {
+         const Choice& choice) {
   const auto start = std::chrono::steady_clock::now();
   std::map<std::string, Tally> kinds;
   Comparisons all;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     if (seconds > 0 && spent.count() > seconds) break;
-    const auto [scene, kind] = is_damped ? damped_scene(seed + i) : random_scene(seed + i);
-    if (!only.empty() && kind != only) continue;
+    const auto [scene, kind] = choice.scene(seed + i);
+    if (!choice.only.empty() && kind != choice.only) continue;
+    if (choice.is_printed) {
+      fmt::print("{}", to_toml(scene));
+      continue;
+    }
     Comparisons own = compare_states(scene, seed + i);
     const DrawnMotion motion(scene);
     own += compare_reductions(motion);
@@ -49,6 +64,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, std::uint64_t 
     std::fflush(stdout);
     all += own;
   }
+  if (choice.is_printed) return 0;
   fmt::print("\n{:<18} {:>8} {:>18} {:>12}\n", "kind", "scenes", "without a motion", "disagreeing");
   for (const auto& [kind, tally] : kinds)
     fmt::print("{:<18} {:>8} {:>18} {:>12}\n", kind, tally.scenes, tally.unknown,
@@ -73,10 +89,12 @@ int main(int argc, char** argv) {
   app.add_option("--methods-every", methods_every,
                  "try every method on every so many-th scene: 1 all, 10 every tenth, 0 none")
       ->capture_default_str();
-  std::string only;
-  app.add_option("--kind", only, "only scenes of this kind, as coincident or massless");
-  bool is_damped = false;
-  app.add_flag("--damped", is_damped, "the same scenes with dashpots and air");
+  qddot::Choice choice;
+  app.add_option("--kind", choice.only, "only scenes of this kind, as coincident or massless");
+  app.add_flag("--damped", choice.is_damped, "the same scenes with dashpots and air");
+  app.add_flag("--driven", choice.is_driven,
+               "the same scenes with supports that move and loads that change");
+  app.add_flag("--print", choice.is_printed, "print the scene files and compare nothing");
   CLI11_PARSE(app, argc, argv);
-  return qddot::fuzz(count, seed, seconds, methods_every, only, is_damped);
+  return qddot::fuzz(count, seed, seconds, methods_every, choice);
 }

@@ -32,7 +32,8 @@ class DrawnMotion {
   // The same difference between two ends.
   double difference(const std::vector<Node>& a, const std::vector<Node>& b) const;
   // The energy that damping has taken by the end [J], and the size of energies there.
-  double dissipated() const { return static_cast<double>(end_.state().dissipated); }
+  double dissipated() const { return static_cast<double>(end_.state().work.dissipated); }
+  double driven() const { return static_cast<double>(end_.state().work.driven); }
   double energy_size() const { return energy_size_; }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 
@@ -404,6 +405,58 @@ RandomScene damped_scene(std::uint64_t seed) {
     if (!is_held) c = 0;
   }
   validate(scene, "damped");
+  return random;
+}
+
+RandomScene driven_scene(std::uint64_t seed) {
+  RandomScene random = seed % 2 == 0 ? random_scene(seed) : damped_scene(seed);
+  Scene& scene = random.scene;
+  Chance chance(seed ^ 0x9e3779b9);
+  double size = 0, weight = 0;
+  for (const Node& node : scene.nodes) {
+    size = std::max(size, (node.position - scene.nodes[0].position).norm());
+    weight += node.mass;
+  }
+  size = std::max(size, 0.1);
+  const double until = *scene.until, w = 2 * std::numbers::pi / until;
+  const bool is_shared = chance.is(0.3), is_along = chance.is(0.5);
+  const auto direction = [&] {
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    if (is_along) {
+      d[0] = 1;
+    } else {
+      for (int c = 0; c < scene.dimension; ++c) d[c] = chance.uniform(-1, 1);
+    }
+    return d;
+  };
+  const auto curve = [&](double amplitude) {
+    TimeCurve drawn;
+    const double part = amplitude * chance.decades(-2, -0.7);
+    if (chance.is(0.7)) {
+      const double phase = chance.is(0.5) ? 0 : chance.uniform(0, 6);
+      drawn.harmonics.push_back({part * direction(), w * chance.decades(-0.5, 1), phase});
+    }
+    if (drawn.harmonics.empty() || chance.is(0.3)) {
+      drawn.polynomial = {Eigen::Vector3d::Zero(), part / until * direction(),
+                          part / (until * until) * direction()};
+    }
+    return drawn;
+  };
+  const auto add = [&](const TimeCurve& one) {
+    scene.curves.push_back(one);
+    return static_cast<int>(scene.curves.size()) - 1;
+  };
+  // A length in the time of the motion, as a force on the mean mass.
+  const double force = weight / static_cast<double>(scene.nodes.size()) * size / (until * until);
+  const int shared = is_shared ? add(curve(size)) : -1;
+  for (Node& node : scene.nodes) {
+    if (node.pinned && (is_shared || chance.is(0.5)))
+      node.curve = is_shared ? shared : add(curve(size));
+    if (!node.pinned && node.mass > 0 && !is_shared && chance.is(0.2))
+      node.curve = add(curve(20 * force));
+  }
+  if (chance.is(0.3)) scene.gravity_curve = add(curve(10 * size / (until * until)));
+  validate(scene, "driven");
   return random;
 }
 

@@ -30,5 +30,9 @@ RandomScene random_scene(std::uint64_t seed);
 // stiffnesses, so that symmetries stay, or on any. No dashpot is at a massless node.
 RandomScene damped_scene(std::uint64_t seed);
 
+// The same scene, every other one damped, with supports that move and loads that change: on few
+// nodes or on all, in directions of the scene or any, by harmonics and polynomials.
+RandomScene driven_scene(std::uint64_t seed);
+
 }  // namespace tests
 }  // namespace qddot

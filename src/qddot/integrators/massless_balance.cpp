@@ -37,7 +37,8 @@ bool has_massless_dashpots(const System& system, const Vec& q) {
 
 MasslessBalance::MasslessBalance(const System& system, Vec start, double tolerance,
                                  double solve_tolerance)
-    : tolerance_(tolerance),
+    : driving_(system.driving()),
+      tolerance_(tolerance),
       solve_tolerance_(solve_tolerance),
       start_(std::move(start)),
       massless_(static_cast<std::size_t>(system.size()), -1) {
@@ -62,6 +63,7 @@ MasslessBalance::MasslessBalance(const System& system, Vec start, double toleran
   for (Place* place : {from_.get(), to_.get()}) {
     place->q.setConstant(system.size(), std::numeric_limits<double>::quiet_NaN());  // unknown
     place->f.resize(system.size());
+    if (driving_) place->f_rate.resize(system.size());
     place->k = k;
     place->own = own;
     place->factors.analyzePattern(own);
@@ -93,7 +95,7 @@ bool MasslessBalance::factorize(Place& place) {
 }
 
 // Let m stand for massless and o for other nodes. f_m = 0 at q' = (q_m', q_o') gives -K_mm (q_m' -
-// q_m) = f_m(q) + K_mo (q_o' - q_o). So nodes first come into balance, and then follow the others
+// q_m) = f_m(q) + K_mo (q_o' - q_o) + h df_m/dt. So nodes first come into balance, and then follow the others
 // by the K of either end. When they turn, a slope is zero for an instant, but that of the step
 // before is not. The error of a step's prediction is at most the nodes' path in the step before,
 // and a solve leaves a part of it.
@@ -110,17 +112,21 @@ bool MasslessBalance::have_followed(double h) {
   if (from_->q == start_) return true;
   if (!from_->is_stable) return false;
   const double out_of_balance = from_->factors.solve(pull_).lpNorm<Eigen::Infinity>();
-  const double led_at_first = led(*from_);
-  const double least = std::max(std::min(led_at_first, led(*to_)), h * speed_before_);
+  const double led_at_first = led(*from_, h);
+  const double least = std::max(std::min(led_at_first, led(*to_, h)), h * speed_before_);
   speed_before_ = led_at_first / h;
   const double farthest =
       std::max(start_.lpNorm<Eigen::Infinity>(), to_->q.lpNorm<Eigen::Infinity>());
   return moved <= most_times_as_far * (least + out_of_balance) + unsolved + rounding * farthest;
 }
 
-// The displacement [m] of massless nodes by K when the others move from q_o to q_o'.
-double MasslessBalance::led(const Place& place) {
+// The displacement [m] of massless nodes by K when the others move from q_o to q_o', and forces
+// change in the time h.
+double MasslessBalance::led(const Place& place, double h) {
   pull_.setZero();
+  for (Index i = 0; driving_ && i < std::ssize(massless_); ++i) {
+    if (massless_[i] >= 0) pull_[massless_[i]] = h * place.f_rate[i];
+  }
   for (Index column = 0; column < place.k.outerSize(); ++column) {
     for (SymmetricMatrix::InnerIterator at(place.k, column); at; ++at) {
       if ((massless_[at.row()] < 0) == (massless_[column] < 0)) continue;

@@ -5,7 +5,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "qddot/model/system.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 
@@ -33,6 +33,7 @@ class MasslessBalance {
       const At at(state.t, state.q);
       place.q = state.q;
       force(at, place.f);
+      if (driving_) driving_->force_rate(at, place.f_rate);
       stiffness(at, place.k);
       place.is_stable = factorize(place);
     };
@@ -55,7 +56,7 @@ class MasslessBalance {
 
  private:
   struct Place {
-    Vec q, f;
+    Vec q, f, f_rate;        // the last if forces depend on time: df/dt
     SymmetricMatrix k, own;  // K; and -K among the massless unknowns, shifted
     Eigen::SimplicialLDLT<SymmetricMatrix, Eigen::Lower> factors;  // of the latter
     bool is_stable = false;  // positive semidefinite, and factorised
@@ -63,8 +64,9 @@ class MasslessBalance {
 
   bool factorize(Place& place);
   bool have_followed(double h);
-  double led(const Place& place);
+  double led(const Place& place, double h);
 
+  const Driving* driving_;  // nullptr if nothing is driven
   double tolerance_, solve_tolerance_;
   Vec start_;
   std::unique_ptr<Place> from_ = std::make_unique<Place>(), to_ = std::make_unique<Place>();

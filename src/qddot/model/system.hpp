@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <memory>
@@ -39,6 +41,11 @@ struct Work {
   friend Work operator-(const Work& a, const Work& b) { return a + -1.0 * b; }
   friend Work operator*(double s, const Work& a) { return {s * a.dissipated, s * a.driven}; }
 };
+
+// The energy that has passed through a system [J], with which errors of its balance grow.
+inline double throughput(const Work& work) {
+  return std::max(std::abs(work.driven), work.dissipated);
+}
 
 // The state of a system at time t [s]: unknown positions q [m], node after node (x0 y0 z0 x1 ...),
 // and velocities v = q' [m/s]. Both have length n = System::size(). `work` is that on the way [J],

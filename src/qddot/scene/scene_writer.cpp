@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstdint>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -69,16 +70,25 @@ class TomlText {
     add("]\n");
   }
 
-  void number(double value) { add_number(value); }
+  void line(std::string_view key, const std::vector<double>& values) {
+    add_key(key);
+    const char* before = "[";
+    for (const double value : values) {
+      add(std::exchange(before, ", "));
+      add_number(value);
+    }
+    add("]\n");
+  }
   // Vectors in brackets, each of `size` components.
   void list(const std::vector<Eigen::Vector3d>& values, int size) {
-    add("[");
+    const char* before = "[";
     for (const Eigen::Vector3d& value : values) {
+      add(std::exchange(before, ", "));
       for (int k = 0; k < size; ++k) {
         add(k == 0 ? "[" : ", ");
         add_number(value[k]);
       }
-      add("], ");
+      add("]");
     }
     add("]");
   }
@@ -138,9 +148,9 @@ void add_curve(const TimeCurve& curve, int number, int dimension, TomlText& out)
     out.line("phase", harmonic.phase);
   }
   for (const PiecewiseCubic& table : curve.tables) {
-    out.add("[curves.table]\ntimes = [");
-    for (const double t : table.times()) out.number(t), out.add(", ");
-    out.add("]\nvalues = ");
+    out.add("[curves.table]\n");
+    out.line("times", table.times());
+    out.add("values = ");
     out.list(table.values(), dimension);
     out.add("\n");
     out.line("interpolation", table.is_straight() ? "linear" : "spline");

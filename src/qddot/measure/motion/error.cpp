@@ -100,6 +100,7 @@ void extend(Scales& scales, const Model& scene, const State& state) {
   scales.kinetic =
       std::max(scales.kinetic,
                scene.system().size() > 0 ? scene.system().kinetic(state.v) : scene.kinetic(state));
+  if (scene.system().driving()) scales.kinetic = std::max(scales.kinetic, throughput(state.work));
 }
 
 double position_error(const std::vector<Node>& nodes, const std::vector<Node>& reference,

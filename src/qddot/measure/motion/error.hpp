@@ -26,7 +26,8 @@ struct PartScale {
 struct Scales {
   double displacement = 0;  // largest |x - x(0)| of a node [m]
   double speed = 0;         // largest |v| of a node [m/s]
-  double kinetic = 0;       // largest kinetic energy of the integrated part [J]
+  // Largest kinetic energy of the integrated part, or what driving has let pass through it [J].
+  double kinetic = 0;
   // The scales of each part of the scene; empty if the ones above hold for all nodes.
   std::vector<PartScale> parts{};
 

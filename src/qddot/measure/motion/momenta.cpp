@@ -59,7 +59,7 @@ Momenta::Momenta(const Scene& scene) : gravity_(scene.gravity) {
     load_ += load;
   }
   if (!box.isEmpty() && box.diagonal().norm() > 0) extent_ = box.diagonal().norm();
-  if (scene.air_damping > 0) return;
+  if (scene.air_damping > 0 || is_driven(scene)) return;
   if (!pins.empty()) pin_ = pins.front(), pulls.push_back(gravity_);
   if (pins.empty()) {
     linear_axes_.assign(all_axes().begin(), all_axes().begin() + scene.dimension);

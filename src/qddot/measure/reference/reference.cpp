@@ -110,13 +110,16 @@ Reference make_reference(const Model& scene, double until, double seconds, const
   Reference reference;
   if (scene.system().stiffness_is_constant() && LinearMotion::has_modes(scene.system()) &&
       scene.system().size() <= largest_modal_size) {
-    Solution modal{.end = LinearMotion(scene.system()).after(scene.initial(), until),
-                   .scales = finest.scales,
-                   .made_by = "modal, exact"};
-    if (scene.system().damping()) {
+    Solution modal{.end = scene.initial(), .scales = finest.scales, .made_by = "modal, exact"};
+    if (scene.system().driving()) {
+      make_integrator(*find_method("exact"), scene.system(), {.step_size = until})
+          ->advance(modal.end, until);
+    } else {
+      modal.end = LinearMotion(scene.system()).after(scene.initial(), until);
       // Damping has taken all energy that the exact motion has lost.
-      modal.end.work.dissipated =
-          total_energy(scene.system(), scene.initial()) - total_energy(scene.system(), modal.end);
+      if (scene.system().damping())
+        modal.end.work.dissipated =
+            total_energy(scene.system(), scene.initial()) - total_energy(scene.system(), modal.end);
     }
     reference = joined(scene, modal, finest, effect);
   } else {

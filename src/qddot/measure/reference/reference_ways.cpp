@@ -1,5 +1,6 @@
 #include "qddot/measure/reference/reference_ways.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <boost/numeric/odeint.hpp>
@@ -19,33 +20,66 @@ constexpr std::int64_t longest_path = 100;
 constexpr std::int64_t most_looks = 1'000'000;
 constexpr double safety = 2;
 
-// Advances q and v by `until` [s], with errors in units of `length` [m] and `speed` [m/s], and adds
-// the energy that damping takes [J]. Returns false if the deadline passes before.
-bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v, double until,
-                           double tolerance, double length, double speed, double& dissipated,
-                           const Deadline& deadline) {
+// Times from `start` to `end` [s], in one piece of forces in time (see At).
+struct Piece {
+  double start, end;
+
+  double middle() const { return start + (end - start) / 2; }
+};
+
+// The pieces from 0 to `until`: one, unless forces in time have corners.
+std::vector<Piece> pieces_of(const System& system, double until) {
+  std::vector<Piece> pieces;
+  double start = 0;
+  if (const Driving* driving = system.driving()) {
+    for (const Corner& corner : driving->corners()) {
+      if (corner.t > start && corner.t < until) pieces.push_back({start, corner.t});
+      start = std::max(start, std::min(corner.t, until));
+    }
+  }
+  pieces.push_back({start, until});
+  return pieces;
+}
+
+// Advances q and v over a piece, with errors in units of `length` [m] and `speed` [m/s], and adds
+// the work of friction and driving [J]. Returns false if the deadline passes before.
+bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v,
+                           const Piece& piece, double tolerance, double length, double speed,
+                           Work& work, const Deadline& deadline) {
   namespace odeint = boost::numeric::odeint;
   using Stacked = std::vector<double>;
   const Index n = system.size();
   const Vec start = q, per_mass = system.mass().cwiseInverse();
   const Damping* damping = system.damping();
-  const double energy = system.mass().sum() * speed * speed;  // unit of the energy taken
+  const Driving* driving = system.driving();
+  const double energy = system.mass().sum() * speed * speed;  // unit of work
+  const double until = piece.end - piece.start;
   Vec now(n), fast(n), f(n), friction(n);
 
-  const auto rate = [&](const Stacked& y, Stacked& dy, double) {
+  const auto rate = [&](const Stacked& y, Stacked& dy, double s) {
     const Eigen::Map<const Vec> u(y.data(), n), w(y.data() + n, n);
     now = start + length * u;
-    system.force({0, now}, f);
+    fast = speed * w;
+    const auto in_piece = [&](At at) {
+      at.within = piece.middle();
+      return at;
+    };
+    const double now_t = piece.start + s;
+    system.force(in_piece({now_t, now}), f);
     if (damping) {
-      fast = speed * w;
-      damping->friction({0, now, fast}, friction);
+      damping->friction(in_piece({now_t, now, fast}), friction);
       f += friction;
       dy[2 * n] = -friction.dot(fast) / energy;
+    }
+    if (driving) {
+      const Work power = driving->driving_power(in_piece({now_t, now, fast}));
+      dy[2 * n] = ((damping ? -friction.dot(fast) : 0) + power.dissipated) / energy;
+      dy[2 * n + 1] = power.driven / energy;
     }
     Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
     Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
   };
-  Stacked y(2 * n + (damping ? 1 : 0), 0.0), end(y.size());
+  Stacked y(2 * n + (driving ? 2 : damping ? 1 : 0), 0.0), end(y.size());
   Eigen::Map<Vec>(y.data() + n, n) = v / speed;
 
   auto stepper =
@@ -73,7 +107,8 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
   }
   q = start + length * Eigen::Map<const Vec>(y.data(), n);
   v = speed * Eigen::Map<const Vec>(y.data() + n, n);
-  if (damping) dissipated += energy * y.back();
+  if (driving || damping) work.dissipated += energy * y[2 * n];
+  if (driving) work.driven += energy * y.back();
   return true;
 }
 
@@ -130,8 +165,10 @@ std::optional<Solution> fehlberg(const Model& scene, double until, double tolera
     const double length =
                      has_scales ? scales.displacement_of(scales.parts[i]) : scales.displacement,
                  speed = has_scales ? scales.speed_of(scales.parts[i]) : scales.speed;
-    if (!fehlberg_step_by_step(part, q, v, until, tolerance, length > 0 ? length : 1,
-                               speed > 0 ? speed : 1, solution.end.work.dissipated, deadline)) {
+    for (const Piece& piece : pieces_of(part, until)) {
+      if (fehlberg_step_by_step(part, q, v, piece, tolerance, length > 0 ? length : 1,
+                                speed > 0 ? speed : 1, solution.end.work, deadline))
+        continue;
       stop_if_interrupted();
       return {};
     }

@@ -33,6 +33,8 @@ class Look {
     const double potential = scene_.energy(state) - kinetic;
     if (!std::isfinite(kinetic + potential)) return;
     scales_.kinetic = std::max(scales_.kinetic, kinetic);
+    if (scene_.system().driving())
+      scales_.kinetic = std::max(scales_.kinetic, throughput(state.work));
     size_ = std::max(size_, kinetic + std::abs(potential));
     frequency_.see(state);
     if (!momenta_.any_kept()) return;

@@ -8,7 +8,9 @@ namespace qddot::inline measure {
 // The scales for errors of invariants on a scene, the same for every method.
 struct MotionScales {
   double energy = 0;     // E(0) [J]
-  double kinetic = 1;    // largest kinetic energy [J]; if nothing moves |E(0)|, else 1 J
+  // Largest kinetic energy, or what driving has let pass through [J]; if nothing moves |E(0)|, else
+  // 1 J.
+  double kinetic = 1;
   double excess = 1;     // E(0) - V at the equilibrium downhill from the start, over `kinetic`; 1
                          // where there is none
   double frequency = 0;  // sqrt(<q'' M q''> / <q' M q'>) [rad/s]: the kinetic energy's frequency
