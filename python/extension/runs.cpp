@@ -12,7 +12,7 @@ namespace {
 using py::arg;
 
 // The caller's arrays that a run fills at the observed times: positions and velocities (2, times,
-// nodes, dimension), energies (3, times).
+// nodes, dimension), energies (5, times).
 class Frames {
  public:
   Frames(const Model& model, std::vector<double> times, py::array_t<double>& motion,
@@ -42,6 +42,7 @@ class Frames {
       energies_[seen_ + times_.size()] = potential;
       energies_[seen_ + 2 * times_.size()] = kinetic + potential;
       energies_[seen_ + 3 * times_.size()] = model_.dissipated(state);
+      energies_[seen_ + 4 * times_.size()] = model_.driven(state);
     }
     ++seen_;
   }
@@ -61,14 +62,15 @@ py::dict end_of(const Model& model, const State& state) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// The kinetic energy, the potential energy, their sum and what damping has taken [J]; None for a
-// system without V.
+// The kinetic energy, the potential energy, their sum, what damping has taken and what driving has
+// given [J]; None for a system without V.
 py::object energies_of(const Model& model, const State& state) {
   if (!model.system().has_potential()) return py::none();
   const double kinetic = model.kinetic(state);
   double potential = 0;
   inside_python([&] { potential = model.potential(state); });
-  return py::make_tuple(kinetic, potential, kinetic + potential, model.dissipated(state));
+  return py::make_tuple(kinetic, potential, kinetic + potential, model.dissipated(state),
+                        model.driven(state));
 }
 
 // A run of a method, which fills the arrays of Frames.

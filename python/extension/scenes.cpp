@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "python/extension/curves.hpp"
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -233,13 +234,15 @@ void add_scenes(py::module_& module) {
                          const Given& velocities, const Given& load, const Given& rest_length,
                          const Given& quartic, const Given& damping, double air_damping,
                          const std::string& name, std::optional<double> until,
-                         std::optional<double> stiff_above, bool starts_at_equilibrium) {
+                         std::optional<double> stiff_above, bool starts_at_equilibrium,
+                         const py::list& curves, const Indices& curve_of_node, int of_gravity) {
         Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity, velocities,
                                 load, rest_length, quartic, damping, air_damping);
         made.name = name;
         made.until = until;
         made.stiff_above = stiff_above;
         made.starts_at_equilibrium = starts_at_equilibrium;
+        set_curves(curves, curve_of_node, of_gravity, made);
         validate(made, name);
         return shared(std::move(made));
       });
@@ -265,6 +268,15 @@ void add_scenes(py::module_& module) {
   of_nodes("positions", &Node::position);
   of_nodes("velocities", &Node::velocity);
   of_nodes("loads", &Node::load);
+  has("curves", [](const Scene& s) {
+    py::list records;
+    for (const TimeCurve& curve : s.curves) records.append(record_of(curve, s.dimension));
+    return records;
+  });
+  has("curve_of_node", [](const Scene& s) {
+    return column<std::int64_t>(s.nodes, [](const Node& node) { return node.curve; });
+  });
+  scene.def_readonly("curve_of_gravity", &Scene::gravity_curve);
   has("gravity", [](const Scene& s) { return array_of(Vec(s.gravity.head(s.dimension))); });
   has("mass", [](const Scene& s) {
     return column<double>(s.nodes, [](const Node& node) { return node.mass; });

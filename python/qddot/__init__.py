@@ -35,6 +35,7 @@ from qddot._analysis import (
     modes,
     stability_limit,
 )
+from qddot._curve import Curve
 from qddot._methods import Method, method, methods
 from qddot._qddot import InvalidInput, NoReference, __version__
 from qddot._reference import Errors, ErrorsAlong, Reference, reference
@@ -58,6 +59,7 @@ __all__ = [
     "Candidate",
     "Convergence",
     "Counts",
+    "Curve",
     "Energy",
     "EnergyTrend",
     "Equilibrium",

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
 from qddot._arrays import Floats, floats, frozen, number, whole_numbers
+from qddot._curve import Curve, Curves, curve_of
+from qddot._curve import held as held_curves
 from qddot._names import hint, knows_its_arguments
 from qddot._optional import require_package
 
@@ -88,7 +90,10 @@ class Scene:
     [1/s]: alpha of the air's force -alpha m v on each node. mass [kg]: of each node, or one for
     all; 0 is massless.
     pinned: the fixed nodes, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
-    positions [m/s]. load: constant forces on the nodes, as positions [N]. until [s]: the default
+    positions [m/s]. load: constant forces on the nodes, as positions [N]. motion: a dict of pinned
+    nodes and the Curve by which each is displaced [m]. load_in_time: a dict of other nodes and the
+    Curve of a load beside `load` [N]. gravity_in_time: the Curve of an acceleration beside gravity.
+    until [s]: the default
     end time of runs. stiff_above [N/m]: stiffer springs are the stiff ones for methods that
     separate these. starts_at_equilibrium: whether the motion begins at rest, downhill from the
     positions. Raises InvalidInput, with one sentence, for wrong input.
@@ -119,6 +124,9 @@ class Scene:
         until: float | None = None,
         stiff_above: float | None = None,
         starts_at_equilibrium: bool = False,
+        motion: Curves | None = None,
+        load_in_time: Curves | None = None,
+        gravity_in_time: Curve | None = None,
     ) -> None:
         places = floats(positions, "positions")
         for what, given in (("velocities", velocities), ("load", load)):
@@ -140,6 +148,10 @@ class Scene:
             raise ValueError(
                 "pinned: allowed are the numbers of nodes, each once, or a mask of bool"
             )
+        is_pinned = np.zeros(len(places), dtype=bool)
+        is_pinned[held[(held >= 0) & (held < len(places))]] = True
+        dimension = places.shape[1] if places.ndim == 2 else 0
+        curves = held_curves(motion, load_in_time, gravity_in_time, is_pinned, dimension)
         self._hold(
             _qddot.Scene.from_arrays(
                 places,
@@ -158,6 +170,9 @@ class Scene:
                 None if until is None else number(until, "until"),
                 None if stiff_above is None else number(stiff_above, "stiff_above"),
                 bool(starts_at_equilibrium),
+                curves.records,
+                curves.of_nodes,
+                curves.of_gravity,
             )
         )
 
@@ -266,11 +281,36 @@ class Scene:
     damping: Floats = _of_handle("damping", "(springs), of their dashpots [N s/m].")
     air_damping: float = _of_handle("air_damping", "alpha of the force -alpha m v [1/s].")
 
+    @property
+    def motion(self) -> dict[int, Curve]:
+        """The pinned nodes that move, and the Curve by which each is displaced [m]."""
+        return self._curves(is_pinned=True)
+
+    @property
+    def load_in_time(self) -> dict[int, Curve]:
+        """The other nodes with a load that changes, and its Curve [N]."""
+        return self._curves(is_pinned=False)
+
+    @property
+    def gravity_in_time(self) -> Curve | None:
+        """The Curve of an acceleration beside gravity [m/s^2], if there is one."""
+        number = self._handle.curve_of_gravity
+        return None if number < 0 else curve_of(self._handle.curves[number])
+
+    def _curves(self, is_pinned: bool) -> dict[int, Curve]:
+        numbers = self._handle.curve_of_node
+        nodes = np.flatnonzero((numbers >= 0) & (self.pinned == is_pinned))
+        if not nodes.size:
+            return {}
+        records = [curve_of(record) for record in self._handle.curves]
+        return {int(node): records[numbers[node]] for node in nodes}
+
     def replace(self, **changes: Any) -> Scene:
         """The same scene with these arguments of Scene() replaced."""
         names = (
             "positions springs stiffness mass pinned gravity velocities load rest_length quartic "
-            "damping air_damping name until stiff_above starts_at_equilibrium"
+            "damping air_damping name until stiff_above starts_at_equilibrium motion load_in_time "
+            "gravity_in_time"
         ).split()
         for name in changes:
             if name not in names:

@@ -51,12 +51,14 @@ class Counts:
 @dataclass(frozen=True, eq=False)
 class Energy:
     """Energies [J] at the times of a solution. total is that of the motion; an exact one keeps it
-    together with what damping has taken, total + dissipated."""
+    together with what damping has taken and supports and loads have given: total + dissipated -
+    driven."""
 
     kinetic: Floats
     potential: Floats
     total: Floats
     dissipated: Floats
+    driven: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,7 +282,7 @@ def _run(
     model = start.model(chosen)
     looks = [] if times is None else times
     motion = np.empty((2, len(looks), model.nodes, model.dimension))
-    energies = np.empty((4, len(looks))) if model.has_potential else None
+    energies = np.empty((5, len(looks))) if model.has_potential else None
     record = _qddot.run(model, chosen.name, options, end, looks, motion, energies, seconds, threads)
     if record["growth"] and record["summary"]["outcome"] == "reached_end":
         warnings.warn(record["growth"], RuntimeWarning, stacklevel=4)
