@@ -34,6 +34,7 @@ nlohmann::json record_of(const DriftRun& run) {
           {"value", run.value},
           {"summary", run.summary},
           {"dissipated", run.summary.work.dissipated},
+          {"driven", run.summary.work.driven},
           {"seconds", run.seconds},
           {"scales", run.scales},
           {"energy", run.energy},
@@ -52,7 +53,7 @@ DriftRun drift_run_of(const nlohmann::json& record) {
                .linear = trend_in(record.at("linear")),
                .angular = trend_in(record.at("angular")),
                .path = record.at("path")};
-  run.summary.work.dissipated = record.at("dissipated");
+  run.summary.work = {record.at("dissipated"), record.at("driven")};
   return run;
 }
 

@@ -152,7 +152,11 @@ Columns<SummaryRow> summary_columns() {
        {"slow_period_low", [](const Row& row) { return if_positive(row.run.energy.slow_period); }}};
   all += interval<Row>("widening", widening);
   all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }},
-          {"dissipated", [](const Row& row) { return if_positive(row.run.summary.work.dissipated); }}};
+          {"dissipated", [](const Row& row) { return if_positive(row.run.summary.work.dissipated); }},
+          {"driven", [](const Row& row) {
+             const double given = row.run.summary.work.driven;
+             return given != 0 ? given : nothing;
+           }}};
   return all;
 }
 
@@ -175,9 +179,10 @@ void print_verdicts(const std::vector<DriftRun>& runs, double until) {
     const bool fixed = run.method->knob == Knob::step_size;
     const std::string who =
         fixed ? run.method->name : fmt::format("{} {:g}", run.method->name, run.value);
-    const double taken = run.summary.work.dissipated;
-    fmt::print("{:<30} {}{}\n", who, verdict(run, until),
-               taken > 0 ? fmt::format("; damping took {:.4g} J beside that", taken) : "");
+    const auto [taken, given] = run.summary.work;
+    fmt::print("{:<30} {}{}{}\n", who, verdict(run, until),
+               taken > 0 ? fmt::format("; damping took {:.4g} J beside that", taken) : "",
+               given != 0 ? fmt::format("; driving gave {:.4g} J beside that", given) : "");
   }
 }
 

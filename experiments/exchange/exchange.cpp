@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
                                         "exchange_error", "tempo", "misfit", "verdict"});
   return p.run(argc, argv, [&] {
     Subject subject = subject_of(scene, until);
-    require_undamped(subject.drawn, subject.source, "its energy is not kept");
+    require_kept_energy(subject.drawn, subject.source, "its energy is not kept");
     require_reference_exists(subject);
     const auto selected = fixed_step_among(methods, subject);
     const Excitation excitation = [&] {

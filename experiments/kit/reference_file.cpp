@@ -205,13 +205,14 @@ nlohmann::json to_json(const Reference& r) {
       {"q", list(r.end.q)},
       {"v", list(r.end.v)}};
   if (r.end.work.dissipated != 0) json["dissipated"] = r.end.work.dissipated;  // of damped scenes
+  if (r.end.work.driven != 0) json["driven"] = r.end.work.driven;              // of driven ones
   return json;
 }
 
 Reference reference_from_json(const nlohmann::json& json) {
   Reference reference = reference_without_end(json);
   reference.end = {json.at("t"), vector(json.at("q")), vector(json.at("v")),
-                   number(json, "dissipated", 0)};
+                   {number(json, "dissipated", 0), number(json, "driven", 0)}};
   reference.energy = json.at("energy");
   reference.scales = scales_from_json(json.at("scales"));
   reference.certified = {json.at("certified_position"), json.at("certified_velocity"),

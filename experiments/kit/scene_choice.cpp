@@ -98,7 +98,12 @@ Subject subject_of(Scene drawn, const SceneChoice& choice, double until) {
   return {choice.name, std::move(drawn), std::move(settled), std::move(model), until};
 }
 
-void require_undamped(const Scene& drawn, const std::string& source, const std::string& why) {
+void require_kept_energy(const Scene& drawn, const std::string& source, const std::string& why) {
+  if (is_driven(drawn)) {
+    throw InvalidInput(fmt::format(
+        "{}: it is driven, and {}; allowed are scenes without motion and without forces in time",
+        source, why));
+  }
   if (!is_damped(drawn)) return;
   throw InvalidInput(fmt::format(
       "{}: it is damped, and {}; allowed are scenes without damping and air_damping", source, why));

@@ -108,10 +108,11 @@ int usual_number_of_frames(std::size_t nodes) {
 
 namespace {
 
-// Damped scenes have the energy that damping has taken, too.
+// Damped scenes have the energy that damping has taken, too, and driven ones what driving has given.
 std::vector<std::string> energy_columns(const Model& scene) {
   std::vector<std::string> names = {"file", "t", "kinetic", "potential", "total"};
   if (scene.system().damping()) names.push_back("dissipated");
+  if (scene.system().driving()) names.push_back("driven");
   return names;
 }
 
@@ -203,10 +204,15 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
     if (!file->add(state, is_compared ? &reference_[frames * every] : nullptr)) break;
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
     const std::string motion = place + file_name;
-    if (scene_.system().damping()) {
-      energy_.row(motion, state.t, kinetic, potential, kinetic + potential, state.work.dissipated);
+    const double total = kinetic + potential;
+    const bool is_damped = scene_.system().damping(), is_driven = scene_.system().driving();
+    const double dissipated = state.work.dissipated, driven = scene_.driven(state);
+    if (is_damped && is_driven) {
+      energy_.row(motion, state.t, kinetic, potential, total, dissipated, driven);
+    } else if (is_damped || is_driven) {
+      energy_.row(motion, state.t, kinetic, potential, total, is_damped ? dissipated : driven);
     } else {
-      energy_.row(motion, state.t, kinetic, potential, kinetic + potential);
+      energy_.row(motion, state.t, kinetic, potential, total);
     }
   }
   file->complete(origin_);

@@ -16,8 +16,8 @@ PHASES |= {name: f"seconds_{name}" for name in ("force", "stiffness", "factoriza
 CACHE = 1 << 26
 # The columns of the energies and their significant digits in a page: of the total its small changes are shown.
 ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}
-# Damped scenes have the energy that damping has taken, too.
-TAKEN = {"dissipated": 17}
+# Damped scenes have the energy that damping has taken, too, and driven ones what driving has given.
+WORK = {"dissipated": 17, "driven": 17}
 
 
 def read_motion_rows(directory):
@@ -43,7 +43,7 @@ def read_energies(directory):
         return {}
     energies = {}
     for line, row in read_rows(path, ("file", *ENERGIES)):
-        columns = ENERGIES | TAKEN if "dissipated" in row else ENERGIES
+        columns = ENERGIES | {name: digits for name, digits in WORK.items() if name in row}
         own = energies.setdefault(row["file"], {name: [] for name in columns})
         for name, digits in columns.items():
             value = cell(path, line, row, name)

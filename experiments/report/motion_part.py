@@ -148,7 +148,8 @@ def told_energy(energy, times):
     kinetic one, and without times that are those of the frames."""
     if energy is None:
         return None
-    told = {name: energy[name] for name in ("kinetic", "total", "dissipated") if name in energy}
+    columns = ("kinetic", "total", "dissipated", "driven")
+    told = {name: energy[name] for name in columns if name in energy}
     is_at_frames = [float(f"{time:.7g}") for time in times] == energy["t"]
     return told if is_at_frames else told | {"t": energy["t"]}
 

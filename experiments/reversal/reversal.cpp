@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
       {{"method", &Row::method}, {"h", &Row::step_size}, {"distance", &Row::distance}});
   return p.run(argc, argv, [&] {
     const Subject subject = subject_of(scene, until);
-    require_undamped(subject.drawn, subject.source, "its motion cannot be run back");
+    require_kept_energy(subject.drawn, subject.source, "its motion cannot be run back");
     return p.each(subject, select_fixed_step(methods, subject), steps, table,
                   [&](auto& method, double h) { return there_and_back(method, h, subject); });
   });

@@ -204,6 +204,15 @@ class Motions(Folder):
         told = motion_part.told_energy(found, [0, 1])
         self.assertEqual(told, {"kinetic": [1, 1], "total": [3, 2], "dissipated": [0, 1.01]})
 
+    def test_energies_of_driven_motions_have_what_driving_gave(self):
+        self.folder.mkdir()
+        table = self.folder / "motions_energy.csv"
+        table.write_text("file,t,kinetic,potential,total,driven\na,0,1,2,3,0\na,1,1,1,2,-1.01\n")
+        found = motion_files.read_energies(self.folder)["a"]
+        self.assertEqual(found["driven"], [0, -1.01])
+        told = motion_part.told_energy(found, [0, 1])
+        self.assertEqual(told, {"kinetic": [1, 1], "total": [3, 2], "driven": [0, -1.01]})
+
     def test_upwards_is_against_gravity(self):
         self.make(side=3, frames=3, runs=1)
         for gravity, up in (

@@ -6,7 +6,12 @@ import { keptMotion, state } from "./report.js";
 import { words } from "./words.js";
 
 const KINDS = { kinetic: "#0072B2", potential: "#B35900", total: INK };
-const DISSIPATED = { dissipated: "#009E73" };
+const WORK = { dissipated: "#009E73", driven: "#7B3FA0" };
+// What belongs to the total of damped and driven motions, in words and in symbols.
+const KEPT = {
+  dissipated: ["with what damping has taken", "+ W"],
+  driven: ["less what driving has given", "− W driven"],
+};
 const REFERENCE_LINE = { color: REFERENCE, width: 4 };
 
 const axis = (text) => ({
@@ -55,13 +60,19 @@ export function drawEnergies() {
   if (!run?.energy) return;
   const exact = energyOf(reference);
   const others = comparedMotions().filter((other) => energyOf(other.run));
-  const isDamped = Boolean(run.energy.dissipated);
-  const kinds = isDamped ? { ...KINDS, ...DISSIPATED } : KINDS;
+  const works = Object.keys(WORK).filter((name) => run.energy[name]);
+  const kinds = { ...KINDS, ...Object.fromEntries(works.map((name) => [name, WORK[name]])) };
   drawKey(kinds, others);
-  const scale = Math.max(0, ...(exact ?? run.energy).kinetic) || 1;
+  const scaled = exact ?? run.energy;
+  const largest = scaled.driven ? [...scaled.kinetic, ...scaled.driven.map(Math.abs)] : scaled.kinetic;
+  const scale = Math.max(0, ...largest) || 1;
+  const scaleInWords = scaled.driven
+    ? "the largest kinetic energy or work of driving"
+    : "the largest kinetic energy";
+  const parts = works.map((name) => KEPT[name][0]).join(" and ");
   byId("energy-scale").textContent =
-    `Differences of the total${isDamped ? ", with what damping has taken," : ""} are divided by ` +
-    `the largest kinetic energy, ${words.number(scale)} J.`;
+    `Differences of the total${parts ? `, ${parts},` : ""} are divided by ` +
+    `${scaleInWords}, ${words.number(scale)} J.`;
   const { t, kept } = run.energy;
   const lines = Object.entries(kinds).map(([kind, color]) =>
     line(t, run.energy[kind], color, "%{y:.4g} J"),
@@ -82,6 +93,7 @@ export function drawEnergies() {
   if (exact && exact !== run.energy) drifts.unshift(referenceLine(exact.t, drift(exact.kept)));
   const all = drifts.flatMap(({ y }) => y).filter((value) => value > 0);
   const range = all.length ? widened(all, 1.5) : [1e-16, 1];
-  const title = `|E ${isDamped ? "+ W " : ""}− E(0)| / largest kinetic`;
+  const symbols = works.map((name) => `${KEPT[name][1]} `).join("");
+  const title = `|E ${symbols}− E(0)| / ${scaled.driven ? "largest" : "largest kinetic"}`;
   plot(byId("energy-errors"), drifts, layout(title, decades(...range)));
 }

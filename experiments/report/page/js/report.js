@@ -51,10 +51,12 @@ for (const { energy, times } of motions.filter((run) => run.energy)) {
   energy.potential = energy.total.map((total, at) =>
     total === null || energy.kinetic[at] === null ? null : total - energy.kinetic[at],
   );
-  // What an exact motion keeps: with damping, the total and what damping has taken.
+  // What an exact motion keeps: the total, with what damping has taken and less what driving has
+  // given.
   energy.kept = energy.total.map((total, at) => {
     const taken = energy.dissipated ? energy.dissipated[at] : 0;
-    return total === null || taken === null ? null : total + taken;
+    const given = energy.driven ? energy.driven[at] : 0;
+    return [total, taken, given].includes(null) ? null : total + taken - given;
   });
 }
 

@@ -73,8 +73,9 @@ bool is_positive(Bernstein b, int left = divisions) {
   return is_positive(first, left - 1) && is_positive(b, left - 1);
 }
 
-// The part of a step over which differences in time are taken.
-constexpr double small_part = 0.01;
+// The part of a step over which differences in time are taken, and the least part of the time, of
+// which they lose no more than half of their digits.
+constexpr double small_part = 0.01, least_part = 1e-6;
 
 }  // namespace
 
@@ -105,7 +106,8 @@ void KinkSearch::look(const Instant& a, const Instant& b) {
     acceleration_[end] -= length_[end];
     if (!moves_by_itself_) continue;
     // Points that move, by central differences.
-    const double e = small_part * (b.state.t - a.state.t);
+    const double e =
+        std::max(small_part * (b.state.t - a.state.t), least_part * std::abs(b.state.t));
     kinks_->kink_lengths({t + e, state.q}, ahead_);
     kinks_->kink_lengths({t - e, state.q}, behind_);
     rate_[end] += (ahead_ - behind_) / (2 * e);
