@@ -15,7 +15,8 @@ namespace {
 
 Reference reference_of(const Scene& drawn, const Scene& start, const Model& scene, double until,
                        const std::string& folder, const nlohmann::json& origin) {
-  require_kept_energy(drawn, drawn.name, "the other solvers are asked for motions that keep their energy");
+  require_kept_energy(drawn, drawn.name,
+                      "the other solvers are asked for motions that keep their energy");
   require_reference_exists(scene, drawn.name);
   Reference reference = reference_for(drawn, start, scene, until, folder, origin);
   if (reference.is_beyond_horizon()) {

@@ -151,12 +151,13 @@ Columns<SummaryRow> summary_columns() {
         }},
        {"slow_period_low", [](const Row& row) { return if_positive(row.run.energy.slow_period); }}};
   all += interval<Row>("widening", widening);
-  all += {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }},
-          {"dissipated", [](const Row& row) { return if_positive(row.run.summary.work.dissipated); }},
-          {"driven", [](const Row& row) {
-             const double given = row.run.summary.work.driven;
-             return given != 0 ? given : nothing;
-           }}};
+  all +=
+      {{"needed", [](const Row& row) { return if_positive(row.run.energy.needed); }},
+       {"dissipated", [](const Row& row) { return if_positive(row.run.summary.work.dissipated); }},
+       {"driven", [](const Row& row) {
+          const double given = row.run.summary.work.driven;
+          return given != 0 ? given : nothing;
+        }}};
   return all;
 }
 

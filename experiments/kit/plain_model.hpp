@@ -105,14 +105,14 @@ class PlainModel {
   Vector positions() const { return plain_positions<Real>(scene_); }
   Vector velocities() const { return plain_velocities<Real>(scene_); }
 
-  // f = -dV/dx [N] of springs and loads, without weights.
+  // f = -dV/dx [N] of springs and loads, without weights, and without springs between pinned nodes.
   void forces_without_weights(const Vector& x, Vector& f) const {
     f.assign(x.size(), 0);
     for (const Spring& spring : scene_.springs) {
       const auto [i, j] = spring.nodes;
       Real d[3];
       const Real l = plain_root(squared_length(spring, x, d));
-      if (!(l > 0)) continue;
+      if (!(l > 0) || is_between_pins(spring)) continue;
       const Real pull = tension(spring.law, l) / l;
       for (std::size_t c = 0; c < 3; ++c) {
         f[3 * i + c] += pull * d[c];
@@ -167,8 +167,7 @@ class PlainModel {
     Real power = 0;
     for (const Spring& spring : scene_.springs) {
       const auto [i, j] = spring.nodes;
-      const bool moves = !scene_.nodes[i].pinned || !scene_.nodes[j].pinned;
-      if (spring.law.damping == 0 || !moves) continue;
+      if (spring.law.damping == 0 || is_between_pins(spring)) continue;
       Real d[3], w[3], along = 0;
       const Real l2 = squared_length(spring, x, d);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -225,6 +224,17 @@ class PlainModel {
     return power;
   }
 
+  // The energy of springs between pinned nodes [J], whose supports give what it changes by.
+  Real energy_between_pins(const Vector& x) const {
+    Real sum = 0, d[3];
+    for (const Spring& spring : scene_.springs) {
+      if (!is_between_pins(spring)) continue;
+      const Real s = plain_root(squared_length(spring, x, d)) - Real(spring.law.rest_length);
+      sum += s * s * (Real(spring.law.stiffness) / 2 + Real(spring.law.quartic) / 4 * s * s);
+    }
+    return sum;
+  }
+
   // 1/2 v'Mv + V [J]; weights and loads of pinned nodes do not count. x is from zero.
   Real energy(const Vector& x, const Vector& v) const {
     Real sum = 0;
@@ -250,6 +260,9 @@ class PlainModel {
   bool place_massless(Vector& x) const;
 
  private:
+  bool is_between_pins(const Spring& spring) const {
+    return scene_.nodes[spring.nodes[0]].pinned && scene_.nodes[spring.nodes[1]].pinned;
+  }
   // Calls see(i, node, its curve) for each node that has one.
   template <class See>
   void for_curves(const See& see) const {

@@ -24,9 +24,10 @@ struct PlainState {
 // Differential Equations I, II.14). Verlet's method makes a long step H of n = 1, 2, ... short
 // ones. Its error is in even powers of 1/n; Aitken and Neville's scheme removes it up to order 24
 // (16 in long double). H is chosen so that the last two orders agree to `tolerance` of the motion's
-// size. If the model is damped or driven, Gragg's method makes the short steps, 2n of them: its error is in
-// even powers, too, for forces that depend on velocities. A model of other forces has the functions
-// of PlainModel that are called here; is_damped() and what that leads to may be missing.
+// size. If the model is damped or driven, Gragg's method makes the short steps, 2n of them: its
+// error is in even powers, too, for forces that depend on velocities. A model of other forces has
+// the functions of PlainModel that are called here; is_damped() and what that leads to may be
+// missing.
 template <class Real, class Model = PlainModel<Real>>
 class PlainMotion {
  public:
@@ -162,8 +163,7 @@ class PlainMotion {
   }
 
   bool is_damped() const {
-    if constexpr (requires { model_.is_damped(); })
-      return model_.is_damped() || model_.is_driven();
+    if constexpr (requires { model_.is_damped(); }) return model_.is_damped() || model_.is_driven();
     return false;
   }
 

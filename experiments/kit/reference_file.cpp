@@ -211,7 +211,9 @@ nlohmann::json to_json(const Reference& r) {
 
 Reference reference_from_json(const nlohmann::json& json) {
   Reference reference = reference_without_end(json);
-  reference.end = {json.at("t"), vector(json.at("q")), vector(json.at("v")),
+  reference.end = {json.at("t"),
+                   vector(json.at("q")),
+                   vector(json.at("v")),
                    {number(json, "dissipated", 0), number(json, "driven", 0)}};
   reference.energy = json.at("energy");
   reference.scales = scales_from_json(json.at("scales"));

@@ -108,7 +108,8 @@ int usual_number_of_frames(std::size_t nodes) {
 
 namespace {
 
-// Damped scenes have the energy that damping has taken, too, and driven ones what driving has given.
+// Damped scenes have the energy that damping has taken, too, and driven ones what driving has
+// given.
 std::vector<std::string> energy_columns(const Model& scene) {
   std::vector<std::string> names = {"file", "t", "kinetic", "potential", "total"};
   if (scene.system().damping()) names.push_back("dissipated");

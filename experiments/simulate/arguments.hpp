@@ -29,9 +29,10 @@ struct Arguments {
       p.word("--final", "CSV of all nodes at the end: node,x,y,z,vx,vy,vz");
   Argument<std::string> trajectory_path =
       p.word("--trajectory", "CSV of all nodes over time: t,node,x,...");
-  Argument<std::string> energy_path = p.word(
-      "--energy", "CSV of t,kinetic,potential,total, of damped scenes dissipated, of driven ones driven, and of "
-      "both balance");
+  Argument<std::string> energy_path = p.word("--energy",
+                                             "CSV of t,kinetic,potential,total, of damped scenes "
+                                             "dissipated, of driven ones driven, and of "
+                                             "both balance");
   Argument<std::string> motion_path =
       p.word("--motion",
              "all nodes over time in 32-bit floats, with springs and faces: .vtkhdf for "

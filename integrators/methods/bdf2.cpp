@@ -50,8 +50,7 @@ class Bdf2 final : public ImplicitStep {
     next.q = now.q + u_;
     next.v = (u_ - known_) / (c * h);
     if (does_work()) {
-      next.work =
-          now.work + back * (now.work - last_.work) + c * h * stage_power(now.q);
+      next.work = now.work + back * (now.work - last_.work) + c * h * stage_power(now.q);
       last_.work = now.work;
     }
     last_.t = now.t;

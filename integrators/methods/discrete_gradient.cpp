@@ -87,7 +87,8 @@ Method discrete_gradient() {
           .source = "Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467, section 4",
           .order = 2,
           .traits = {Trait::implicit, Trait::cancels_torques, Trait::reversible},
-          .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient, Need::balance_in_time},
+          .needs = {Need::conservative, Need::stiffness, Need::discrete_gradient,
+                    Need::balance_in_time},
           .takes = {Option::solve_tolerance, Option::solver},
           .damped = Damped::by_any,
           .make = create<EnergyMomentum>};

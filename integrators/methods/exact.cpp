@@ -11,9 +11,9 @@
 #include <memory>
 #include <optional>
 
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <fmt/format.h>
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include "qddot/analysis/exponential_motion.hpp"
 #include "qddot/analysis/linear_motion.hpp"
 #include "qddot/integrators/base/fixed_steps.hpp"

@@ -93,7 +93,7 @@ class GeneralizedAlpha : public ImplicitStep {
  private:
   const Alphas alpha_;
   Vec a_{system().size()}, last_a_{system().size()};
-  Work power_;   // v'Cv at the start of a step [W]
+  Work power_;         // v'Cv at the start of a step [W]
   double last_h_ = 0;  // 0: no step yet, and a_ is that of the start
 };
 

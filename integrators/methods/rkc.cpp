@@ -109,9 +109,8 @@ class Rkc final : public Formula {
                h * (stage.m_rate * last_.v + stage.g_rate * first_.v);
       next.v = rest * x.v + stage.m * now_.v + stage.n * before_.v +
                h * (stage.m_rate * last_.a + stage.g_rate * first_.a);
-      next.work = rest * x.work + stage.m * now_.work +
-                        stage.n * before_.work +
-                        h * (stage.m_rate * last_.power + stage.g_rate * first_.power);
+      next.work = rest * x.work + stage.m * now_.work + stage.n * before_.work +
+                  h * (stage.m_rate * last_.power + stage.g_rate * first_.power);
       std::swap(before_, now_);
       std::swap(now_, next);
       now_.t = x.t + stage.c * h;

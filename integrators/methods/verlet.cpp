@@ -119,9 +119,9 @@ class Verlet final : public Formula {
     }
     take_friction(next.friction);
     next.work = x.work;
-    next.work.dissipated -= h / 4 *
-                            (product_with_sum(x.v, half_, x.friction) +
-                             product_with_sum(half_, next.v, next.friction));
+    next.work.dissipated -=
+        h / 4 *
+        (product_with_sum(x.v, half_, x.friction) + product_with_sum(half_, next.v, next.friction));
   }
 
   // Velocities, with damping.

@@ -63,8 +63,7 @@ TimeCurve curve_of(const py::dict& record) {
   TimeCurve curve{.polynomial = vectors_of(record["polynomial"].cast<Doubles>())};
   for (const py::handle& entry : record["harmonics"].cast<py::list>()) {
     const auto [amplitude, frequency, phase] = entry.cast<std::tuple<Doubles, double, double>>();
-    curve.harmonics.push_back(
-        {vector_of(amplitude.data(), amplitude.size()), frequency, phase});
+    curve.harmonics.push_back({vector_of(amplitude.data(), amplitude.size()), frequency, phase});
   }
   if (!record["times"].is_none()) {
     const auto times = record["times"].cast<std::vector<double>>();
@@ -85,8 +84,8 @@ py::dict record_of(const TimeCurve& curve, int dimension) {
     throw InvalidInput("a curve has several tables or functions, which no record has");
   py::list harmonics;
   for (const TimeCurve::Harmonic& one : curve.harmonics)
-    harmonics.append(py::make_tuple(array_of(Vec(one.amplitude.head(dimension))), one.frequency,
-                                    one.phase));
+    harmonics.append(
+        py::make_tuple(array_of(Vec(one.amplitude.head(dimension))), one.frequency, one.phase));
   py::dict record(arg("polynomial") = rows_of(curve.polynomial, dimension),
                   arg("harmonics") = harmonics, arg("times") = py::none(),
                   arg("values") = py::none(), arg("interpolation") = "spline",
@@ -97,9 +96,8 @@ py::dict record_of(const TimeCurve& curve, int dimension) {
     record["interpolation"] = table.is_straight() ? "linear" : "spline";
   }
   const auto callable = [dimension](const std::function<Vector(double)>& function) {
-    return py::cpp_function([function, dimension](double t) {
-      return array_of(Vec(function(t).head(dimension)));
-    });
+    return py::cpp_function(
+        [function, dimension](double t) { return array_of(Vec(function(t).head(dimension))); });
   };
   for (const TimeCurve::Own& own : curve.own) {
     record["function"] = callable(own.value);

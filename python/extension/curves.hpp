@@ -13,7 +13,6 @@ TimeCurve curve_of(const py::dict& record);
 py::dict record_of(const TimeCurve& curve, int dimension);
 
 // Gives the scene these curves; curve_of_node: that of each node, or -1.
-void set_curves(const py::list& curves, const Indices& curve_of_node, int of_gravity,
-                Scene& scene);
+void set_curves(const py::list& curves, const Indices& curve_of_node, int of_gravity, Scene& scene);
 
 }  // namespace qddot::python

@@ -1,7 +1,7 @@
 #include <limits>
 
-#include "python/extension/curves.hpp"
 #include "python/extension/bindings.hpp"
+#include "python/extension/curves.hpp"
 #include "python/extension/outside.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/model/differenced_stiffness.hpp"

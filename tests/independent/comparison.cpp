@@ -241,16 +241,17 @@ void compare_runs(const DrawnMotion& motion, const Model& reduced, const Method&
   const auto apart = [&](double a, double b) { return std::abs(a - b) / motion.energy_size(); };
   const auto compare = [&](const char* what, double End::*energy, double expected) {
     const double off = apart(ends[2].*energy, expected);
-    const double moved = std::max(apart(ends[0].*energy, ends[1].*energy),
-                                  apart(ends[1].*energy, ends[2].*energy));
+    const double moved =
+        std::max(apart(ends[0].*energy, ends[1].*energy), apart(ends[1].*energy, ends[2].*energy));
     // The method of order p has work to that order; it may be small by chance where positions are
     // not.
     // The extrapolation controls no error of work.
     constexpr double own = 1e-9;
     if (off <= irregular * std::max(moved, change) + motion.floor() + own) return;
-    all.disagreements.push_back(
-        fmt::format("{}, {} at {:.3g}: the {} energy is {:.3g} off, where it changed by {:.3g}",
-                    where, method.name, options[2], what, off, moved));
+    all.disagreements.push_back(fmt::format(
+        "{}, {} at {:.3g}: the {} energy is {:.17g}, of the drawn nodes {:.17g}; {:.3g} "
+        "off, where it changed by {:.3g}",
+        where, method.name, options[2], what, ends[2].*energy, expected, off, moved));
   };
   compare("dissipated", &End::dissipated, motion.dissipated());
   compare("driven", &End::driven, motion.driven());

@@ -33,7 +33,13 @@ class DrawnMotion {
   double difference(const std::vector<Node>& a, const std::vector<Node>& b) const;
   // The energy that damping has taken by the end [J], and the size of energies there.
   double dissipated() const { return static_cast<double>(end_.state().work.dissipated); }
-  double driven() const { return static_cast<double>(end_.state().work.driven); }
+  double driven() const {
+    const PlainMotion<long double> start(scene_, 1);
+    const auto& model = end_.model();
+    const PlainState<long double> end = end_.state();
+    return static_cast<double>(end.work.driven + model.energy_between_pins(end.x) -
+                               model.energy_between_pins(start.state().x));
+  }
   double energy_size() const { return energy_size_; }
 
  private:

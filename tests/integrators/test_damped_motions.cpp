@@ -239,8 +239,8 @@ BOOST_AUTO_TEST_CASE(the_balance_of_verlet_is_bounded_and_falls_with_the_square_
     BOOST_TEST_REQUIRE(r.summary.message == "");
     BOOST_TEST(r.summary.energy_growth < 1.001);
     for (const State& state : film.seen) {
-      worst[halving] = std::max(worst[halving],
-                                std::abs(total_energy(*system, state) + state.work.dissipated - start));
+      worst[halving] = std::max(
+          worst[halving], std::abs(total_energy(*system, state) + state.work.dissipated - start));
     }
     BOOST_TEST(r.state.work.dissipated > 0.5 * start);
   }

@@ -52,10 +52,8 @@ State by_fehlberg(const System& system, const State& start, double until) {
   const auto stepper = odeint::make_controlled<odeint::runge_kutta_fehlberg78<Y>>(1e-15, 1e-15);
   odeint::integrate_adaptive(stepper, rate, y, start.t, until, 1e-3);
   const auto rest = y.end() - 2;
-  return {until,
-          Eigen::Map<Vec>(y.data(), n),
-          Eigen::Map<Vec>(y.data() + n, n),
-          {rest[0], rest[1]}};
+  return {
+      until, Eigen::Map<Vec>(y.data(), n), Eigen::Map<Vec>(y.data() + n, n), {rest[0], rest[1]}};
 }
 
 DrivenMotion driven_motion(std::string name, const Problem& p) {
@@ -64,16 +62,13 @@ DrivenMotion driven_motion(std::string name, const Problem& p) {
 }
 
 std::vector<DrivenMotion> motions_for(const Method& method) {
-  static const DrivenMotion plain = driven_motion("hammock", driven_problem(hammock(3), false, false)),
-                            air = driven_motion("hammock in air",
-                                                driven_problem(hammock(3), false, true)),
-                            any = driven_motion("damped hammock",
-                                                driven_problem(hammock(3), true, true)),
-                            linear = driven_motion("linear hammock",
-                                                   driven_problem(linear_hammock(2), false, false)),
-                            linear_air = driven_motion(
-                                "linear hammock in air",
-                                driven_problem(linear_hammock(2), false, true));
+  static const DrivenMotion
+      plain = driven_motion("hammock", driven_problem(hammock(3), false, false)),
+      air = driven_motion("hammock in air", driven_problem(hammock(3), false, true)),
+      any = driven_motion("damped hammock", driven_problem(hammock(3), true, true)),
+      linear = driven_motion("linear hammock", driven_problem(linear_hammock(2), false, false)),
+      linear_air =
+          driven_motion("linear hammock in air", driven_problem(linear_hammock(2), false, true));
   if (method.asks(Need::constant_stiffness)) return {linear, linear_air};
   switch (method.takes_damping()) {
     case Damped::none:
@@ -230,8 +225,8 @@ BOOST_AUTO_TEST_CASE(the_balance_of_verlet_stays_bounded_over_a_million_steps) {
   double first = 0, last = 0, most_driven = 0;
   Film film{.times = {}};
   for (int i = 1; i <= 4000; ++i) film.times.push_back(until * i / 4000.7);
-  const Run r = run(method_named("verlet"), *system, p.initial, until, {.step_size = h},
-                    film.observer());
+  const Run r =
+      run(method_named("verlet"), *system, p.initial, until, {.step_size = h}, film.observer());
   BOOST_TEST_REQUIRE(r.summary.message == "");
   BOOST_TEST(r.summary.energy_growth < 1.02);
   for (std::size_t i = 0; i < film.seen.size(); ++i) {
@@ -264,8 +259,8 @@ BOOST_AUTO_TEST_CASE(a_support_that_stands_still_in_a_step_shows_in_the_order) {
   const DrivenMotion motion = motions_for(method_named("dprkn6")).front();
   for (const char* name : {"verlet", "rk4", "blanes_moan6"}) {
     const auto error = [&](double h) {
-      const Run r = run(method_named(name), Frozen(*motion.system, h), motion.start, 1,
-                        {.step_size = h});
+      const Run r =
+          run(method_named(name), Frozen(*motion.system, h), motion.start, 1, {.step_size = h});
       return distance(r.state.q, motion.end.q);
     };
     BOOST_TEST(std::abs(std::log2(error(1. / 800) / error(1. / 1600)) - 1) < 0.2, name);
@@ -284,8 +279,8 @@ BOOST_AUTO_TEST_CASE(exact_is_right_to_rounding_also_at_resonance) {
     p.network.anchors[0].curve = 0;
     const auto system = make_mass_spring(p.network);
     using Long = long double;
-    // x = free + a w^2 (sin Wt - W/w sin wt)/(w^2 - W^2), which is (sin wt - wt cos wt) a/2 at W = w.
-    // With W = w (1 + e), the difference of sines is 2 cos sin, so that nothing cancels.
+    // x = free + a w^2 (sin Wt - W/w sin wt)/(w^2 - W^2), which is (sin wt - wt cos wt) a/2 at W =
+    // w. With W = w (1 + e), the difference of sines is 2 cos sin, so that nothing cancels.
     const Long wl = w, Wl = W, t = until, e = (Wl - wl);
     Long driven = 0;
     if (std::abs(ratio - 1) < 1e-5) {
@@ -299,8 +294,8 @@ BOOST_AUTO_TEST_CASE(exact_is_right_to_rounding_also_at_resonance) {
     }
     const Long exact = oscillator.x0 * cosl(wl * t) + oscillator.v0 / wl * sinl(wl * t) + driven;
     for (const int steps : {1, 7, 100}) {
-      const Run r = run(method_named("exact"), *system, p.initial, until,
-                        {.step_size = until / steps});
+      const Run r =
+          run(method_named("exact"), *system, p.initial, until, {.step_size = until / steps});
       BOOST_TEST_REQUIRE(r.summary.message == "");
       // Phases of w t = 35 have lost that many roundings; so many steps have as many again.
       const double size = 1 + std::abs(static_cast<double>(driven));
@@ -322,8 +317,7 @@ BOOST_AUTO_TEST_CASE(exact_comes_to_the_steady_state_of_a_damped_support) {
   const auto system = make_mass_spring(p.network);
   // Forty time constants: what is left of the start is 4e-18.
   const double until = 40 / (zeta * w);
-  const Run r =
-      run(method_named("exact"), *system, p.initial, until, {.step_size = until / 3});
+  const Run r = run(method_named("exact"), *system, p.initial, until, {.step_size = until / 3});
   BOOST_TEST_REQUIRE(r.summary.message == "");
   using namespace std::complex_literals;
   const auto pull = w * w + 2i * zeta * w * W;  // of the spring and the dashpot
@@ -350,7 +344,7 @@ BOOST_AUTO_TEST_CASE(a_table_keeps_the_order_of_every_method) {
   }
   // So many steps that errors are below 1e-3 and above rounding.
   const std::pair<const char*, double> chosen[] = {
-      {"verlet", 900},     {"rk4", 200},       {"blanes_moan6", 40},
+      {"verlet", 900},     {"rk4", 200},      {"blanes_moan6", 40},
       {"symmetric8", 150}, {"kahan_li8", 30}, {"implicit_midpoint", 900}};
   for (const auto& [name, count] : chosen) {
     const Method& method = method_named(name);

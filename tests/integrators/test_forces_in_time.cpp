@@ -135,8 +135,7 @@ void check_refusal(const Method& method, const System& system, Outcome outcome) 
 BOOST_DATA_TEST_CASE(methods_keep_their_order_with_forces_that_depend_on_time, methods(), method) {
   // This system has forces of time without Driving.
   const bool needs_driving = method.asks(Need::rate_in_time) ||
-                             method.asks(Need::balance_in_time) ||
-                             method.asks(Need::known_in_time);
+                             method.asks(Need::balance_in_time) || method.asks(Need::known_in_time);
   if (method.asks(Need::autonomous) || needs_driving) {
     check_refusal(method, Driven(k, 0, push), Outcome::not_autonomous);
   } else {

@@ -20,11 +20,17 @@ struct Offers {
   bool operator==(const Offers&) const = default;
 };
 Offers offers_of(const System& s) {
-  return {
-      s.has_stiffness(),        s.split_stiffness() != nullptr, s.discrete_gradient() != nullptr,
-      s.laplacian() != nullptr, s.pieces() != nullptr,          s.validity() != nullptr,
-      s.kinks() != nullptr,     s.damping() != nullptr,         s.driving() != nullptr,
-      !s.blocks().empty(),      s.split() != nullptr};
+  return {s.has_stiffness(),
+          s.split_stiffness() != nullptr,
+          s.discrete_gradient() != nullptr,
+          s.laplacian() != nullptr,
+          s.pieces() != nullptr,
+          s.validity() != nullptr,
+          s.kinks() != nullptr,
+          s.damping() != nullptr,
+          s.driving() != nullptr,
+          !s.blocks().empty(),
+          s.split() != nullptr};
 }
 
 // A mass on a spring of V = q^2/2, by V and f alone.
@@ -81,9 +87,7 @@ class Offering final : public CapableSystem {
   bool is_linear_at(const At& at) const override { return at.q[0] < 1; }
   bool is_valid_at(const At& at) const override { return at.q[0] < 1; }
   Index kink_count() const override { return 1; }
-  void kink_lengths(const At& at, MutableVec lengths) const override {
-    lengths[0] = at.q[0] - 1;
-  }
+  void kink_lengths(const At& at, MutableVec lengths) const override { lengths[0] = at.q[0] - 1; }
 
  private:
   Offers offers_;

@@ -45,7 +45,8 @@ BOOST_AUTO_TEST_CASE(a_spline_is_the_polynomial_that_its_values_are_of) {
     const auto times = uneven_times(count);
     const PiecewiseCubic spline = spline_of(of_degree, times);
     for (double t = times.front(); t < times.back(); t += 0.01) {
-      BOOST_TEST((spline.at(t, t) - of_degree(t)).norm() < 1e-13);  // some roundings of numbers near 1
+      BOOST_TEST((spline.at(t, t) - of_degree(t)).norm() <
+                 1e-13);  // some roundings of numbers near 1
     }
   }
 }
@@ -57,7 +58,8 @@ BOOST_AUTO_TEST_CASE(a_spline_of_a_smooth_curve_has_order_four) {
     for (int i = 0; i <= count; ++i) times.push_back(3. * i / count);
     const PiecewiseCubic spline = spline_of(wave, times);
     double largest = 0;
-    for (double t = 0; t < 3; t += 0.003) largest = std::max(largest, (spline.at(t, t) - wave(t)).norm());
+    for (double t = 0; t < 3; t += 0.003)
+      largest = std::max(largest, (spline.at(t, t) - wave(t)).norm());
     return largest;
   };
   const double order = std::log2(error(32) / error(64));
@@ -82,8 +84,8 @@ BOOST_AUTO_TEST_CASE(two_derivatives_are_continuous_and_the_ends_rest) {
 BOOST_AUTO_TEST_CASE(the_rate_is_the_derivative) {
   TimeCurve curve{.polynomial = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {0.1, 0, 0}},
                   .harmonics = {{{1, 2, 0}, 5, 0.3}, {{0, 0, 1}, 0, 1}}};
-  curve.tables.push_back(spline_of([](double t) { return Vector(t * t, 1, std::sin(t)); },
-                                   uneven_times(6)));
+  curve.tables.push_back(
+      spline_of([](double t) { return Vector(t * t, 1, std::sin(t)); }, uneven_times(6)));
   curve.own.push_back({[](double t) { return Vector(std::exp(-t), 0, 0); },
                        [](double t) { return Vector(-std::exp(-t), 0, 0); }});
   const Eigen::Matrix3d turn = Eigen::Matrix3d::Random();

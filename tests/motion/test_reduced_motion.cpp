@@ -3,6 +3,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include "qddot/scene/reduce/part.hpp"
 #include "tests/independent/random_scene.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"

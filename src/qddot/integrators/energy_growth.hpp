@@ -36,8 +36,7 @@ class EnergyGrowth {
  public:
   // Borrows the system, which must outlive it.
   explicit EnergyGrowth(const System& system)
-      : system_(system),
-        is_conserved_(system.has_potential() && keeps_balance(system)) {}
+      : system_(system), is_conserved_(system.has_potential() && keeps_balance(system)) {}
 
   // Begins a new run at `state`.
   void start(const State& state);

@@ -95,10 +95,10 @@ bool MasslessBalance::factorize(Place& place) {
 }
 
 // Let m stand for massless and o for other nodes. f_m = 0 at q' = (q_m', q_o') gives -K_mm (q_m' -
-// q_m) = f_m(q) + K_mo (q_o' - q_o) + h df_m/dt. So nodes first come into balance, and then follow the others
-// by the K of either end. When they turn, a slope is zero for an instant, but that of the step
-// before is not. The error of a step's prediction is at most the nodes' path in the step before,
-// and a solve leaves a part of it.
+// q_m) = f_m(q) + K_mo (q_o' - q_o) + h df_m/dt. So nodes first come into balance, and then follow
+// the others by the K of either end. When they turn, a slope is zero for an instant, but that of
+// the step before is not. The error of a step's prediction is at most the nodes' path in the step
+// before, and a solve leaves a part of it.
 bool MasslessBalance::have_followed(double h) {
   double moved = 0;
   for (Index i = 0; i < std::ssize(massless_); ++i) {

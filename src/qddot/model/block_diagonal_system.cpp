@@ -68,8 +68,7 @@ bool BlockDiagonalSystem::bound_row_sums(const At& at, Vec& sums) const {
   return all;
 }
 
-bool BlockDiagonalSystem::multiply_stiffness(const At& at, const ConstVec& x,
-                                             MutableVec y) const {
+bool BlockDiagonalSystem::multiply_stiffness(const At& at, const ConstVec& x, MutableVec y) const {
   bool all = true;
   const VecView of = x;
   for_each(blocks_, at, [&](const System& block, const At& own, Index first) {

@@ -76,8 +76,7 @@ bool ConstrainedSystem::bound_damping(SymmetricMatrix& l) const {
   return true;
 }
 
-bool ConstrainedSystem::multiply_stiffness(const At& at, const ConstVec& x,
-                                           MutableVec y) const {
+bool ConstrainedSystem::multiply_stiffness(const At& at, const ConstVec& x, MutableVec y) const {
   Vec moved = x;
   for (const Index i : unknowns_) moved[i] = 0;
   if (!system_->multiply_stiffness(at, moved, y)) return false;

@@ -52,9 +52,7 @@ class DrivenNetwork {
     if (has_loads()) add_loads(values(time), f);
   }
   // Their potential energy [J].
-  double load_energy(const At& at) const {
-    return has_loads() ? load_energy(values(at), at.q) : 0;
-  }
+  double load_energy(const At& at) const { return has_loads() ? load_energy(values(at), at.q) : 0; }
 
   Work power(const At& at) const {
     const std::vector<Point> s = values(at), s_rate = rates(at);

@@ -188,10 +188,9 @@ class MassSpring final : public CapableSystem {
     f.setZero();
     springs.add_forces(
         [&](const auto& spring) {
-          const SecantDashpot dashpot =
-              secant_dashpot(spring.law, springs.between({q0, curves0}, spring),
-                             springs.between({q1, curves1}, spring),
-                             springs.between({q2, curves2}, spring), rate);
+          const SecantDashpot dashpot = secant_dashpot(
+              spring.law, springs.between({q0, curves0}, spring),
+              springs.between({q1, curves1}, spring), springs.between({q2, curves2}, spring), rate);
           power += dashpot.power;
           return dashpot.force;
         },

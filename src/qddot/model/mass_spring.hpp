@@ -60,8 +60,8 @@ struct Network {
   // Bit d of a node is set if its coordinate d stays zero and is no unknown; empty if there are
   // none.
   std::vector<unsigned> zero_coordinates{};
-  Vec load{};                           // constant forces beside the weight [N], D N; empty = none
-  double air_damping = 0;               // alpha [1/s]: each node feels the force -alpha m v
+  Vec load{};              // constant forces beside the weight [N], D N; empty = none
+  double air_damping = 0;  // alpha [1/s]: each node feels the force -alpha m v
   // Displacements of moving points, loads, or accelerations, from t = 0 on.
   std::vector<TimeCurve> curves{};
   std::vector<DrivenLoad> driven_loads{};

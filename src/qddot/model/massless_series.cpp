@@ -63,12 +63,11 @@ class Joints {
     }
     if (last == node || at->other == node || !(rest_length > 0)) return {};
     if (at->other != fixed && network_.node_mass[at->other] == 0) return {};
-    return MasslessSeries{
-        node,
-        at->other,
-        at->point,
-        {.stiffness = 1 / compliance, .rest_length = rest_length},
-        at->curve};
+    return MasslessSeries{node,
+                          at->other,
+                          at->point,
+                          {.stiffness = 1 / compliance, .rest_length = rest_length},
+                          at->curve};
   }
 
   const std::vector<Touching>& touching(int node) const { return touching_[node]; }

@@ -163,8 +163,7 @@ class System {
   virtual bool bound_row_sums(const At&, Vec& /*sums*/) const { return false; }
   // Writes K x [N], found without K, into `y` and returns true; x, y: n. Returns false if the
   // system has no way to it that is cheaper than its K.
-  virtual bool multiply_stiffness(const At& /*at*/, const ConstVec& /*x*/,
-                                  MutableVec /*y*/) const {
+  virtual bool multiply_stiffness(const At& /*at*/, const ConstVec& /*x*/, MutableVec /*y*/) const {
     return false;
   }
   // The number of entries of K's pattern, or no less than that, without the pattern.

@@ -15,8 +15,10 @@
   GENERATOR(orbit)                  \
   GENERATOR(pair)                   \
   GENERATOR(pendulum)               \
+  GENERATOR(shaken_pendulum)        \
   GENERATOR(chain)                  \
   GENERATOR(plucked_string)         \
+  GENERATOR(bowed_string)           \
   GENERATOR(cloth)                  \
   GENERATOR(framed_cloth)           \
   GENERATOR(lattice)                \

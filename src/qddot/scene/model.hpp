@@ -73,8 +73,8 @@ class Model {
   double dissipated(const State& state) const;
   // The energy that moving supports and changing loads have given up to state.t [J].
   double driven(const State& state) const;
-  // T + V + dissipated - driven [J], which an exact motion keeps, without the rounding of terms that
-  // cancel if something falls.
+  // T + V + dissipated - driven [J], which an exact motion keeps, without the rounding of terms
+  // that cancel if something falls.
   double energy(const State& state) const;
 
   // Massless nodes that have unknowns, ascending: most methods cannot run them.

@@ -18,8 +18,8 @@ std::vector<std::size_t> chosen_nodes(const TomlTable& choice, const Scene& scen
                                       std::span<const mesh::Group> groups);
 
 // Adds the loads of the tables `load` of a [mesh] or a [generator] to the scene's nodes: `force`
-// [N] on each chosen node, or equal shares of `total_force` [N]; or the curve `force_in_time` [N] on
-// each that is not pinned.
+// [N] on each chosen node, or equal shares of `total_force` [N]; or the curve `force_in_time` [N]
+// on each that is not pinned.
 void add_loads(const TomlTable& source, std::span<const mesh::Group> groups,
                const CurveReader& curves, Scene& scene);
 

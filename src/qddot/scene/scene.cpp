@@ -75,14 +75,15 @@ void check_curve(const Entry& entry, const TimeCurve& curve) {
     entry.check_finite("amplitude", harmonic.amplitude);
     entry.check_not_negative("frequency", harmonic.frequency);
     if (!std::isfinite(harmonic.phase))
-      entry.refuse("phase", fmt::format("{} is not allowed; allowed are finite numbers",
-                                        harmonic.phase));
+      entry.refuse("phase",
+                   fmt::format("{} is not allowed; allowed are finite numbers", harmonic.phase));
   }
   for (const PiecewiseCubic& table : curve.tables) {
     for (const Eigen::Vector3d& value : table.values()) entry.check_finite("values", value);
     const std::vector<double>& times = table.times();
-    const bool is_ascending = std::ranges::all_of(times, [](double t) { return std::isfinite(t); }) &&
-                              std::ranges::is_sorted(times, std::less_equal<>());
+    const bool is_ascending =
+        std::ranges::all_of(times, [](double t) { return std::isfinite(t); }) &&
+        std::ranges::is_sorted(times, std::less_equal<>());
     if (times.size() < 2 || times.size() != table.values().size() || !is_ascending)
       entry.refuse("times", "allowed are two or more finite times that ascend, each with a value");
   }
@@ -98,12 +99,12 @@ void check_curves(const std::string& source, const Scene& scene) {
       Entry{source, "nodes", i}.refuse(
           "curve", fmt::format("{} is not a curve; there are {}", node.curve, count));
     if (node.curve >= 0 && !node.pinned && !(node.mass > 0))
-      Entry{source, "nodes", i}.refuse(
-          "curve", "a load that changes is not allowed on a node without mass");
+      Entry{source, "nodes", i}.refuse("curve",
+                                       "a load that changes is not allowed on a node without mass");
   }
   if (scene.gravity_curve >= count)
-    Entry{source}.refuse("gravity_curve",
-                         fmt::format("{} is not a curve; there are {}", scene.gravity_curve, count));
+    Entry{source}.refuse("gravity_curve", fmt::format("{} is not a curve; there are {}",
+                                                      scene.gravity_curve, count));
 }
 
 // Refuses loads that nothing resists: they would move a node at once and without end.

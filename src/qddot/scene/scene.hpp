@@ -76,8 +76,8 @@ bool is_damped(const Scene& scene);
 // Whether anything depends on time: a support moves, or a load or gravity changes.
 bool is_driven(const Scene& scene);
 
-// The same scene with all moving supports where they are at t = 0, and displaced from there; nothing
-// if they are there already.
+// The same scene with all moving supports where they are at t = 0, and displaced from there;
+// nothing if they are there already.
 std::optional<Scene> with_supports_at_start(const Scene& scene);
 
 // Sets the dashpot of each spring that has none to beta times its stiffness [N s/m]; beta in s.

@@ -18,8 +18,7 @@ namespace qddot {
 namespace {
 
 Node node_in(const TomlTable& table, int dimension, const CurveReader& curves) {
-  table.allow_keys(
-      {"position", "velocity", "mass", "pinned", "load", "motion", "load_in_time"});
+  table.allow_keys({"position", "velocity", "mass", "pinned", "load", "motion", "load_in_time"});
   Node node;
   node.position = table.vector("position", dimension);
   node.velocity = table.vector_or_zero("velocity", dimension);
@@ -51,7 +50,7 @@ void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits,
                    "damping_time", "gravity_in_time", "curves", "nodes", "springs"});
   const std::vector<TomlTable> nodes = file.tables("nodes"), springs = file.tables("springs");
   require_within(limits, {nodes.size(), springs.size()}, file.place());
-  for (const TomlTable& table : nodes) 
+  for (const TomlTable& table : nodes)
     scene.nodes.push_back(node_in(table, scene.dimension, curves));
   if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
   for (const TomlTable& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));

@@ -188,8 +188,7 @@ std::optional<double> ImplicitStep::find_secant_friction() {
   if (!at1_) return {};
   const Stopwatch watch(clock(), &Seconds::force);
   secant_.resize(x_.size());
-  const BackwardRate rate{x_,  at1_->q, at2_->q, rate_,   a1_,
-                          a2_, t_,      at1_->t, at2_->t};
+  const BackwardRate rate{x_, at1_->q, at2_->q, rate_, a1_, a2_, t_, at1_->t, at2_->t};
   const auto power = system().damping()->secant_friction(rate, velocity_, secant_);
   if (!power) at1_ = nullptr;
   return power;

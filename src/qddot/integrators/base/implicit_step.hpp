@@ -114,8 +114,8 @@ class ImplicitStep : public Formula {
   EffectiveMass matrix_;
   double factorized_s_ = 0;  // s of the present factors; 0: none
   const bool is_damped_;
-  double rate_ = 0, factorized_rate_ = 0;    // r, and that of the present factors
-  Vec w_, velocity_;                         // n if the system has Damping
+  double rate_ = 0, factorized_rate_ = 0;        // r, and that of the present factors
+  Vec w_, velocity_;                             // n if the system has Damping
   const State *at1_ = nullptr, *at2_ = nullptr;  // see set_lengths
   double a1_ = 0, a2_ = 0;
   Vec secant_;

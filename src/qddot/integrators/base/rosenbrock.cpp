@@ -123,8 +123,8 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
     // Simpson's rule, with the middle of the cubic through both ends.
     x_ = (now.state.q + q) / 2 + h / 8 * (now.state.v - v);
     next.state.work =
-        now.state.work + h / 6 * (power({t, now.state.q}) + 4 * power({t + h / 2, x_}) +
-                                  power({t + h, q}));
+        now.state.work +
+        h / 6 * (power({t, now.state.q}) + 4 * power({t + h / 2, x_}) + power({t + h, q}));
   }
   return Outcome::reached_end;
 }

@@ -34,7 +34,7 @@ class Rosenbrock final : public AdaptiveStep {
   double tolerance(const State& now, double g, const Vec& u) const;
 
   const RosenbrockTable& table_;
-  Vec alpha_, gammas_;  // of the stages
+  Vec alpha_, gammas_;         // of the stages
   Eigen::MatrixXd u_q_, u_v_;  // n x stages
   Vec r_, s_, x_;
   SymmetricMatrix k_;

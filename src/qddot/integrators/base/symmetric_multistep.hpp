@@ -61,7 +61,7 @@ class SymmetricMultistep final : public Formula {
   DeferredCorrection first_;
   StepIntegrals integrals_;
   std::vector<Work> powers_;  // of driving at the ends of the last steps, if anything is driven
-  std::vector<Vec> u_;  // a ring buffer, with a place for the next
+  std::vector<Vec> u_;        // a ring buffer, with a place for the next
   Vec f_, a_;
   State state_;
   std::vector<const double*> past_;

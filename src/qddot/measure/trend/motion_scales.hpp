@@ -7,7 +7,7 @@ namespace qddot::inline measure {
 
 // The scales for errors of invariants on a scene, the same for every method.
 struct MotionScales {
-  double energy = 0;     // E(0) [J]
+  double energy = 0;  // E(0) [J]
   // Largest kinetic energy, or what driving has let pass through [J]; if nothing moves |E(0)|, else
   // 1 J.
   double kinetic = 1;

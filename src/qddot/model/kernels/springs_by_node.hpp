@@ -123,8 +123,8 @@ class SpringsByNode {
   std::array<double, D * slice_rows> slice_weight_{};
   const DrivenNetwork<D>& driven_;
   std::vector<std::array<double, D>> points_;
-  std::vector<int> point_curves_;      // of the points; -1 where fixed
-  std::vector<Image> images_;  // in the order of their sources
+  std::vector<int> point_curves_;  // of the points; -1 where fixed
+  std::vector<Image> images_;      // in the order of their sources
   NeighbourSlices slices_;
   Rings rings_;
   RingTable ring_table_{};

@@ -26,8 +26,7 @@ class StiffnessKernel {
   void stiffness(const SpringsByNode<D>& springs, const At& at, double compression,
                  SymmetricMatrix& k) const;
   // The same with B = spring_material_stiffness(law, d).
-  void material_stiffness(const SpringsByNode<D>& springs, const At& at,
-                          SymmetricMatrix& k) const;
+  void material_stiffness(const SpringsByNode<D>& springs, const At& at, SymmetricMatrix& k) const;
 
  private:
   // Marks the values of K that this kernel writes.

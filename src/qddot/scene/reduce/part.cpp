@@ -62,11 +62,11 @@ void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
   const int i = numbers[from], j = numbers[to];
   const Eigen::Vector3d signs = mirror.diagonal();
   if (i == no_number) {
-    network.anchors.push_back({j, signs.cwiseProduct(half.y[from]), law, holds, stiff, 0,
-                               curves.of_node(from, signs)});
+    network.anchors.push_back(
+        {j, signs.cwiseProduct(half.y[from]), law, holds, stiff, 0, curves.of_node(from, signs)});
   } else if (j == no_number) {
-    network.anchors.push_back({i, signs.cwiseProduct(half.y[to]), law, holds, stiff, 0,
-                               curves.of_node(to, signs)});
+    network.anchors.push_back(
+        {i, signs.cwiseProduct(half.y[to]), law, holds, stiff, 0, curves.of_node(to, signs)});
   } else if (!mirror.are_all_plus()) {
     network.image_links.push_back({i, j, signs, law, holds, stiff});
   } else {

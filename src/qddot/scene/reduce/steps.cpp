@@ -60,8 +60,7 @@ class Steps {
   const Scene& scene_;
   const Reductions& reductions_;
   std::optional<std::vector<Spring>> changed_{};
-  Pieces pieces_{
-      .nodes = scene_.nodes, .dimension = scene_.dimension, .curves = scene_.curves};
+  Pieces pieces_{.nodes = scene_.nodes, .dimension = scene_.dimension, .curves = scene_.curves};
   std::size_t resting_ = 0;  // parts that rest in their fall
 };
 
@@ -111,9 +110,8 @@ void Steps::condense() {
   if (std::ranges::none_of(pieces_.nodes, [](const Node& n) { return !n.pinned && n.mass == 0; }))
     return;
   if (!changed_) changed_ = scene_.springs;
-  pieces_.series =
-      condense_series(pieces_.nodes, *changed_, scene_.stiff_above,
-                      on_lines(pieces_.nodes, *changed_, scene_));
+  pieces_.series = condense_series(pieces_.nodes, *changed_, scene_.stiff_above,
+                                   on_lines(pieces_.nodes, *changed_, scene_));
   if (pieces_.series.empty()) return;
   std::vector<std::size_t> condensed;
   for (const Series& series : pieces_.series) {

@@ -58,9 +58,10 @@ std::string subspace(const Part& part, int dimension) {
 std::string pinned_sentence(std::size_t pins, std::size_t moving) {
   const std::string where = moving == 0      ? "where drawn"
                             : moving == pins ? "on curves of time"
-                                             : fmt::format("where drawn or, {} of them, on curves "
-                                                           "of time,",
-                                                           moving);
+                                             : fmt::format(
+                                                   "where drawn or, {} of them, on curves "
+                                                   "of time,",
+                                                   moving);
   return fmt::format("{} stay{} {} and {} no unknowns", counted(pins, "pinned node"),
                      pins == 1 ? "s" : "", where, pins == 1 ? "has" : "have");
 }
