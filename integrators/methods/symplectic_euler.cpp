@@ -26,9 +26,7 @@ class SymplecticEuler final : public Formula {
     force(now, f_);
     v_.add_quotient(now.v, h, f_, system().mass(), next.v);
     q_.add_scaled(now.q, h, next.v, next.q);
-    if (does_work()) next.work = now.work + h * driving_power();
-    // The kick's work of friction: h times the mean of the velocities before and after it.
-    if (is_damped()) next.work.dissipated -= h / 2 * (now.v + next.v).dot(friction());
+    if (does_work()) next.work = now.work + work_of_kick(h, now.v, next.v);
     return Outcome::reached_end;
   }
 

@@ -286,8 +286,8 @@ BOOST_AUTO_TEST_CASE(a_shaken_pendulum_grows_inside_of_mathieus_tongues_alone) {
     BOOST_TEST_CONTEXT("W/w = " << ratio << ": grows by " << growth << ", expected " << expected) {
       if (expected > 1.005) {
         ++inside;
-        // The other part has decayed to some 1e-4, over thirty periods.
-        BOOST_TEST(std::abs(growth / expected - 1) < 2e-4);
+        // The other part may be a few per cent after so many periods, over thirty more.
+        BOOST_TEST(std::abs(growth / expected - 1) < 1e-3);
       } else {
         BOOST_TEST(growth < 1.02);  // the motion only beats
       }

@@ -54,6 +54,10 @@ LinearMotion::LinearMotion(const System& system)
   }
 }
 
+double LinearMotion::fastest() const {
+  return squares_.size() > 0 ? std::sqrt(squares_.lpNorm<Eigen::Infinity>()) : 0;
+}
+
 State LinearMotion::after(const State& from, double duration) const {
   State to;
   Scratch scratch;

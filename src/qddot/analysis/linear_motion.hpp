@@ -36,6 +36,9 @@ class LinearMotion {
   // The same into `to`, another state; allocates nothing if both have been used before.
   void propagate(const State& from, double duration, State& to, Scratch& scratch) const;
 
+  // The largest frequency, or rate of growth, of a mode [rad/s].
+  double fastest() const;
+
   // Whether modes stay apart: there is no damping, or one of that kind, and forces of time are
   // known.
   static bool has_modes(const System& system);

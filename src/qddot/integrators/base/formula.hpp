@@ -65,6 +65,13 @@ class Formula {
   Work power() const { return run_.counted().power(); }
   Work power(const At& at) { return run_.counted().power(at); }
   const Work& driving_power() const { return run_.counted().driving_power(); }
+  // The work of a kick of h by the last force, which led from one velocity to another: that of
+  // driving, and that of friction along their mean.
+  Work work_of_kick(double h, const Vec& before, const Vec& after) const {
+    Work work = h * driving_power();
+    if (is_damped()) work.dissipated -= h / 2 * (before + after).dot(friction());
+    return work;
+  }
   void subtract_damping(const System& part, const At& at, double rate, SymmetricMatrix& k) {
     run_.counted().subtract_damping(part, at, rate, k);
   }

@@ -159,7 +159,7 @@ std::vector<double> Stage::distances(const Trial& one, const Trial& other) const
 }
 
 bool Stage::is_reduced_by_symmetry() const {
-  return drawn_ && std::ranges::any_of(model_.findings(), [](const Finding& finding) {
+  return has_springs() && std::ranges::any_of(model_.findings(), [](const Finding& finding) {
            return finding.reduction == Reduction::dimension ||
                   finding.reduction == Reduction::mirror;
          });

@@ -86,7 +86,8 @@ class Stage {
 
   // Whether the forces are those of springs that were drawn, and not of a caller's own system.
   bool has_springs() const { return drawn_ && !drawn_->springs.empty(); }
-  // Whether a dimension or a mirror was reduced of the scene that was drawn.
+  // Whether a dimension or a mirror was reduced of springs that were drawn. Without springs nothing
+  // leads out of either.
   bool is_reduced_by_symmetry() const;
   // Runs the method on the scene as it was drawn, with all nodes pushed in all dimensions, and
   // gives the distances from the trial. Empty if the run fails or there is no scene of springs.
