@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -54,15 +55,18 @@ void refuse_choices(const Program& program) {
   }
 }
 
-// Repeats the run that was judged for the outputs on its way; returns its end.
-State seen(const Answer& answer, const std::shared_ptr<const Model>& model, double until,
-           Outputs& output) {
+// Repeats the run that was judged for the outputs on its way. Steps may end at these, and then the
+// end is another one. So that of the answer is shown in its place.
+void show_way(const Answer& answer, const std::shared_ptr<const Model>& model, double until,
+              Outputs& output) {
   Simulation run(model, *answer.method, options_for(*answer.method, answer.value, *model));
   output.see(run.state());
   Observer observer = output.observer();
   observer.times = merged({observer.times, answer.looks});
+  observer.see = [&answer, see = std::move(observer.see)](const State& state) {
+    see(state.t == answer.end.t ? answer.end : state);
+  };
   run.advance(until, observer, interruption());
-  return run.state();
 }
 
 // Numbers that are not finite become null where this is written.
@@ -128,16 +132,15 @@ int answer(const Arguments& a) {
     return why ? why->status : end_not_reached;
   }
   if (output.is_asked_for()) {
-    State end = answer.end;
-    if (output.looks_on_the_way()) end = seen(answer, model, until, output);
+    if (output.looks_on_the_way()) show_way(answer, model, until, output);
     nlohmann::json origin = provenance(a.p.command_line(), subject.drawn, subject.start(), *model);
     origin["outcome"] = name(answer.summary.outcome);
-    origin["t_reached"] = end.t;
+    origin["t_reached"] = answer.end.t;
     origin["energy_growth"] = answer.summary.energy_growth;
     origin["energy_loss"] = answer.summary.energy_loss;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     origin.update(about(answer, a));
-    output.finish(end, origin);
+    output.finish(answer.end, origin);
   }
   fmt::print(
       "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check, {} to find them "

@@ -398,13 +398,32 @@ def _answer(
         about["_diagnose"] = _diagnosis(start, chosen, options, end)
         about["_repeat"] = _repetition(start, chosen, options, end, record["summary"], threads)
         return _at_end(start.of, record, State(**record["end"]), about)
-    # Repeats the run that was judged, with its own looks, and records these times. It ends in the
-    # same state, except with methods that end steps at the times.
+    # Repeats the run that was judged, with its own looks, and records these times. Methods that end
+    # steps at the times end in another state, of which nothing is claimed.
     left = None if seconds is None else max(seconds - record["seconds_in_all"], 1e-3)
     looks = np.union1d(times, record["looks"])
     run = _run(start, chosen, options, end, [float(t) for t in looks], left, threads)
     message = record["why"] or run.message
-    return replace(_at(run, times), **{**about, "message": message})
+    shown = _with_end(_at(run, times), record)
+    return replace(shown, **{**about, "message": message})
+
+
+def _with_end(run: Solution, record: dict[str, Any]) -> Solution:
+    """The solution with the end of the record, also as its sample there."""
+    end = State(**record["end"])
+    if not np.array_equal(end.q.shape, run.end.q.shape):
+        end = State(end.t, end.q.reshape(-1), end.v.reshape(-1))
+    if run.t.size == 0 or run.t[-1] != end.t:
+        return replace(run, end=end)
+    q, v = run.q.copy(), run.v.copy()
+    q[-1], v[-1] = end.q, end.v
+    energy = run.energy
+    if energy and record.get("energies"):
+        columns = [getattr(energy, f.name).copy() for f in fields(Energy)]
+        for column, value in zip(columns, record["energies"]):
+            column[-1] = value
+        energy = Energy(*columns)
+    return replace(run, end=end, q=q, v=v, energy=energy)
 
 
 def _at(run: Solution, times: list[float]) -> Solution:

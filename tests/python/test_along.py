@@ -62,6 +62,20 @@ class Anytime(unittest.TestCase):
                     most = max(1.5 * np.max(np.abs(at_steps)) + one, least)
                     self.assertLess(np.max(np.abs(between)), most)
 
+    def test_an_answer_ends_where_it_was_judged_whatever_is_saved(self):
+        # Strong damping, for which methods are fast that end steps at these times.
+        cloth = qddot.scenes.cloth(nodes=4, damping_time=0.03)
+        for of in ("positions", "path"):
+            plain = qddot.solve(cloth, until=0.3, accuracy=1e-5, accuracy_of=of)
+            saved = qddot.solve(
+                cloth, until=0.3, accuracy=1e-5, accuracy_of=of, save_at=[0.1, 0.17, 0.3]
+            )
+            self.assertTrue(np.array_equal(saved.q[-1], saved.end.q))
+            self.assertAlmostEqual(saved.energy.total[-1], saved.energy.kinetic[-1]
+                                   + saved.energy.potential[-1], delta=1e-12)  # fmt: skip
+            if (plain.method, plain.value) == (saved.method, saved.value):
+                self.assertTrue(np.array_equal(saved.end.q, plain.end.q), of)
+
     def test_any_time_is_that_of_save_at(self):
         cloth = qddot.scenes.cloth(nodes=4)
         saved = dict(until=1.0, save_at=TIMES)
