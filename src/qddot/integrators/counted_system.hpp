@@ -37,10 +37,9 @@ class CountedSystem {
   void force(const System& part, const At& at, MutableVec f) {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
-    if (!driving_) return sum_force(part, at, f);
-    const At there = placed(at);
-    driven_ = books(part) ? driving_->driving_power(there) : Work{};
-    sum_force(part, there, f);
+    if (driving_) return driven_force(part, placed(at), f);
+    if (!damping_ || at.v.size() == 0) return part.force(at, f);
+    damped_force(part, at, f);
   }
 
   // f_d [N] of the last force at velocities v; zero if the system has no Damping.
@@ -70,10 +69,14 @@ class CountedSystem {
   // The same with work beside it (see System::force_beside). The time of that work is not a
   // force's, so a timed run does it before and after.
   double force_beside(const At& at, MutableVec f, BesideForce& beside) {
-    if (!driving_) return sum_force_beside(at, f, beside);
+    const bool is_damped = damping_ && at.v.size() > 0;
+    if (!clock_ && !is_damped && !driving_) {
+      ++counts.force_evaluations;
+      return system_.force_beside(at, f, beside);
+    }
     const At there = placed(at);
     const double sum = sum_force_beside(there, f, beside);
-    driven_ = driving_->driving_power(there);
+    if (driving_) driven_ = driving_->driving_power(there);
     return sum;
   }
   // Driving of the system, nullptr if it has none.
@@ -116,8 +119,12 @@ class CountedSystem {
   Seconds seconds;
 
  private:
-  void sum_force(const System& part, const At& at, MutableVec f) {
+  void driven_force(const System& part, const At& at, MutableVec& f) {
+    driven_ = books(part) ? driving_->driving_power(at) : Work{};
     if (!damping_ || at.v.size() == 0) return part.force(at, f);
+    damped_force(part, at, f);
+  }
+  void damped_force(const System& part, const At& at, MutableVec& f) {
     friction_.resize(f.size());
     const Damping* damping = part.damping();
     if (damping && damping->damped_force(at, f, friction_, nullptr)) {
@@ -135,7 +142,7 @@ class CountedSystem {
       power_ = 0;
     }
   }
-  double sum_force_beside(const At& at, MutableVec f, BesideForce& beside) {
+  double sum_force_beside(const At& at, MutableVec& f, BesideForce& beside) {
     const bool is_damped = damping_ && at.v.size() > 0;
     if (!clock_ && !is_damped) {
       ++counts.force_evaluations;

@@ -37,7 +37,7 @@ class DrivenNetwork {
 
   // A time of curves; see At.
   struct Time {
-    Time(const At& at)
+    explicit Time(const At& at)
         : t(std::isnan(at.t) ? 0 : at.t), within(std::isnan(at.within) ? t : at.within) {}
     explicit Time(double time) : t(time), within(time) {}
     double t, within;
@@ -45,11 +45,17 @@ class DrivenNetwork {
 
   // The values of all curves; none if nothing is driven. A t that is NaN is the start, 0.
   std::vector<Point> values(const Time& time) const { return of_all(&TimeCurve::at, time); }
+  std::vector<Point> values(const At& at) const {
+    return is_driven() ? values(Time(at)) : std::vector<Point>();
+  }
   std::vector<Point> rates(const Time& time) const { return of_all(&TimeCurve::rate, time); }
+  std::vector<Point> rates(const At& at) const {
+    return is_driven() ? rates(Time(at)) : std::vector<Point>();
+  }
 
   // Adds the driven loads to f.
-  void add_loads(const Time& time, MutableVec f) const {
-    if (has_loads()) add_loads(values(time), f);
+  void add_loads(const At& at, MutableVec f) const {
+    if (has_loads()) add_loads(values(at), f);
   }
   // Their potential energy [J].
   double load_energy(const At& at) const { return has_loads() ? load_energy(values(at), at.q) : 0; }

@@ -67,16 +67,12 @@ class MassSpring final : public CapableSystem {
     }
     if (by_node_) {
       by_node_->sum_forces(at, f);
-    } else {
+    } else if (driven_.is_driven()) {
       const Curves curves = driven_.values(at);
-      const Moved now{at.q, curves};
-      f = weight_;
+      sum_spring_by_spring({at.q, curves}, f);
       driven_.add_loads(at, f);
-      springs_->add_forces(
-          [&](const auto& spring) {
-            return spring_force(spring.law, springs_->between(now, spring));
-          },
-          f);
+    } else {
+      sum_spring_by_spring({at.q, none_}, f);
     }
     if (is_damped() && at.v.size() > 0) add_friction(at, f);
   }
@@ -398,6 +394,14 @@ class MassSpring final : public CapableSystem {
     return std::unique_ptr<const MassSpring>(new MassSpring(std::move(network), forces, layout_));
   }
 
+  [[gnu::always_inline]] void sum_spring_by_spring(const Moved& now, MutableVec& f) const {
+    f = weight_;
+    springs_->add_forces(
+        [&](const auto& spring) {
+          return spring_force(spring.law, springs_->between(now, spring));
+        },
+        f);
+  }
   // Not for dashpots that vectors sum.
   void add_friction(const At& at, MutableVec f) const {
     if (has_dashpots_) {
@@ -531,6 +535,7 @@ class MassSpring final : public CapableSystem {
   DrivenNetwork<D> driven_;
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
+  Curves none_;                          // of a network that is not driven
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
   double constant_energy_, air_damping_;
   bool has_dashpots_ = false;
