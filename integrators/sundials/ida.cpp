@@ -326,7 +326,7 @@ class Ida final : public Library {
   Vector rate_;                      // y'
   std::optional<Vector> tolerated_;  // absolute tolerance, with that of massless nodes
   Vec f_rate_{system().size()};
-  // Of a system that depends on time, if it has massless nodes: at the time reached.
+  // A system that depends on time, at the time reached; only with massless nodes.
   std::optional<FrozenInTime> frozen_;
   // The system with all unknowns held but the massless ones; empty without massless nodes.
   std::optional<ConstrainedSystem> massless_;

@@ -107,12 +107,12 @@ py::dict record_of(const TimeCurve& curve, int dimension) {
 }
 
 void set_curves(const py::list& curves, const Indices& curve_of_node, int of_gravity,
-                Scene& scene) {
-  for (const py::handle& record : curves) scene.curves.push_back(curve_of(record.cast<py::dict>()));
-  scene.gravity_curve = of_gravity;
-  if (curve_of_node.size() == 0) return;
-  for (std::size_t i = 0; i < scene.nodes.size(); ++i)
-    scene.nodes[i].curve = static_cast<int>(curve_of_node.at(static_cast<py::ssize_t>(i)));
+                SceneArrays& arrays) {
+  for (const py::handle& record : curves)
+    arrays.curves.push_back(curve_of(record.cast<py::dict>()));
+  arrays.gravity_curve = of_gravity;
+  for (py::ssize_t i = 0; i < curve_of_node.size(); ++i)
+    arrays.curve_of_node.push_back(static_cast<int>(curve_of_node.data()[i]));
 }
 
 }  // namespace qddot::python

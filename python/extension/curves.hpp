@@ -1,7 +1,7 @@
 #pragma once
 
 #include "python/extension/arrays.hpp"
-#include "qddot/scene/scene.hpp"
+#include "qddot/scene/scene_arrays.hpp"
 
 namespace qddot::python {
 
@@ -12,7 +12,8 @@ TimeCurve curve_of(const py::dict& record);
 // The record of a curve. Throws InvalidInput for one that no record has: several tables.
 py::dict record_of(const TimeCurve& curve, int dimension);
 
-// Gives the scene these curves; curve_of_node: that of each node, or -1.
-void set_curves(const py::list& curves, const Indices& curve_of_node, int of_gravity, Scene& scene);
+// Gives the arrays these curves; curve_of_node: that of each node, or -1.
+void set_curves(const py::list& curves, const Indices& curve_of_node, int of_gravity,
+                SceneArrays& arrays);
 
 }  // namespace qddot::python

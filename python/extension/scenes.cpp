@@ -28,7 +28,8 @@ Eigen::MatrixXd matrix_of(const Doubles& array, const char* name) {
 Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles& mass,
                  const Doubles& stiffness, const Indices& pinned, const Given& gravity,
                  const Given& velocities, const Given& load, const Given& rest_length,
-                 const Given& quartic, const Given& damping, double air_damping) {
+                 const Given& quartic, const Given& damping, double air_damping,
+                 const py::list& curves, const Indices& curve_of_node, int of_gravity) {
   SceneArrays a;
   const auto node = [](std::int64_t number, const char* name) {
     if (number >= 0) return static_cast<std::size_t>(number);
@@ -53,6 +54,7 @@ Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles
   if (quartic) a.quartic = vec_of(*quartic);
   if (damping) a.damping = vec_of(*damping);
   a.air_damping = air_damping;
+  set_curves(curves, curve_of_node, of_gravity, a);
   return scene_of(a);
 }
 
@@ -228,24 +230,24 @@ void add_scenes(py::module_& module) {
   scene.def_static("generate", [=](const std::string& name, const GeneratorValues& values) {
     return shared(generate(generator_named(name), values, name));
   });
-  scene.def_static(
-      "from_arrays", [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
-                         const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                         const Given& velocities, const Given& load, const Given& rest_length,
-                         const Given& quartic, const Given& damping, double air_damping,
-                         const std::string& name, std::optional<double> until,
-                         std::optional<double> stiff_above, bool starts_at_equilibrium,
-                         const py::list& curves, const Indices& curve_of_node, int of_gravity) {
-        Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity, velocities,
-                                load, rest_length, quartic, damping, air_damping);
-        made.name = name;
-        made.until = until;
-        made.stiff_above = stiff_above;
-        made.starts_at_equilibrium = starts_at_equilibrium;
-        set_curves(curves, curve_of_node, of_gravity, made);
-        validate(made, name);
-        return shared(std::move(made));
-      });
+  scene.def_static("from_arrays",
+                   [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
+                       const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+                       const Given& velocities, const Given& load, const Given& rest_length,
+                       const Given& quartic, const Given& damping, double air_damping,
+                       const std::string& name, std::optional<double> until,
+                       std::optional<double> stiff_above, bool starts_at_equilibrium,
+                       const py::list& curves, const Indices& curve_of_node, int of_gravity) {
+                     Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
+                                             velocities, load, rest_length, quartic, damping,
+                                             air_damping, curves, curve_of_node, of_gravity);
+                     made.name = name;
+                     made.until = until;
+                     made.stiff_above = stiff_above;
+                     made.starts_at_equilibrium = starts_at_equilibrium;
+                     validate(made, name);
+                     return shared(std::move(made));
+                   });
   // The scene as its motion starts: with its nodes at equilibrium if it starts there.
   scene.def("started", [=](const Shared& self) {
     return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;

@@ -5,6 +5,7 @@
 
 #include "qddot/analysis/exponential_motion.hpp"
 #include "tests/integrators/motions.hpp"
+#include "tests/integrators/work_orders.hpp"
 
 BOOST_AUTO_TEST_SUITE(damped_motions)
 
@@ -71,38 +72,6 @@ const std::vector<DampedMotion>& motions_for(const Method& method) {
   return method.takes_damping() == Damped::by_any ? any : air;
 }
 
-// Errors below these are rounding.
-constexpr double floor_q = 1e-13, floor_v = 1e-12;
-
-struct Orders {
-  double q, v, dissipated;
-};
-
-// The orders over the last five halvings before rounding shows.
-Orders observed_orders(const Method& method, const DampedMotion& motion) {
-  std::vector<double> h, q, v, dissipated;
-  const double factor = method.order >= 6 ? 1.3 : method.order >= 4 ? 1.5 : 2;
-  const double first = method.order == 1 ? 512 : method.order == 2 ? 48 : 12;
-  const double most = method.order == 1 ? 20'000 : 4'000;
-  for (double steps = first; steps < most; steps *= factor) {
-    const Run r =
-        run(method, *motion.system, motion.start, 1, {.step_size = 1 / std::round(steps)});
-    BOOST_TEST_REQUIRE(r.summary.message == "");
-    const double error_q = distance(r.state.q, motion.end.q),
-                 error_v = distance(r.state.v, motion.end.v);
-    if (error_q < floor_q || error_v < floor_v) break;
-    h.push_back(-std::log(std::round(steps)));
-    q.push_back(std::log(error_q));
-    v.push_back(std::log(error_v));
-    dissipated.push_back(std::log(std::abs(r.state.work.dissipated - motion.end.work.dissipated)));
-  }
-  BOOST_TEST_REQUIRE(q.size() >= 5u);
-  const auto tail = [](const std::vector<double>& x) {
-    return Vec(Eigen::Map<const Vec>(x.data() + std::ssize(x) - 5, 5));
-  };
-  return {slope(tail(h), tail(q)), slope(tail(h), tail(v)), slope(tail(h), tail(dissipated))};
-}
-
 bool takes_damping(const Method& m) { return m.takes_damping() != Damped::none; }
 std::vector<Method> of_fixed_steps() {
   return methods_where(
@@ -127,14 +96,15 @@ BOOST_DATA_TEST_CASE(every_method_keeps_its_order, of_fixed_steps(), method) {
   const double more = method.name == "rk8" ? 1.2 : slack + 0.1;
   double least_dissipated = INFINITY;
   for (const DampedMotion& motion : motions_for(method)) {
-    const Orders observed = observed_orders(method, motion);
-    least_dissipated = std::min(least_dissipated, observed.dissipated);
+    const Orders observed =
+        observed_orders(method, *motion.system, motion.start, motion.end, &Work::dissipated);
+    least_dissipated = std::min(least_dissipated, observed.work);
     BOOST_TEST_CONTEXT(motion.name << ", in q " << observed.q << ", in v " << observed.v
-                                   << ", in the energy taken " << observed.dissipated) {
+                                   << ", in the energy taken " << observed.work) {
       BOOST_TEST(std::min(observed.q, observed.v) > method.order - slack);
       BOOST_TEST(std::max(observed.q, observed.v) < method.order + more);
       // Errors of one number may cancel, which makes them fall faster, and slower afterwards.
-      BOOST_TEST(observed.dissipated > method.order - 2.5 * slack);
+      BOOST_TEST(observed.work > method.order - 2.5 * slack);
     }
   }
   // So no more than one of two motions is without an error of the method's own order.

@@ -5,6 +5,7 @@
 
 #include "qddot/model/capabilities.hpp"
 #include "tests/integrators/motions.hpp"
+#include "tests/integrators/work_orders.hpp"
 #include "tests/model/driven.hpp"
 
 BOOST_AUTO_TEST_SUITE(driven_motions)
@@ -80,37 +81,6 @@ std::vector<DrivenMotion> motions_for(const Method& method) {
   }
 }
 
-constexpr double floor_q = 1e-13, floor_v = 1e-12;
-
-struct Orders {
-  double q, v, driven;
-};
-
-// The orders over the last five points before rounding shows.
-Orders observed_orders(const Method& method, const DrivenMotion& motion) {
-  std::vector<double> h, q, v, driven;
-  const double factor = method.order >= 6 ? 1.3 : method.order >= 4 ? 1.5 : 2;
-  const double first = method.order == 1 ? 512 : method.order == 2 ? 48 : 12;
-  const double most = method.order == 1 ? 20'000 : 4'000;
-  for (double steps = first; steps < most; steps *= factor) {
-    const Run r =
-        run(method, *motion.system, motion.start, 1, {.step_size = 1 / std::round(steps)});
-    BOOST_TEST_REQUIRE(r.summary.message == "");
-    const double error_q = distance(r.state.q, motion.end.q),
-                 error_v = distance(r.state.v, motion.end.v);
-    if (error_q < floor_q || error_v < floor_v) break;
-    h.push_back(-std::log(std::round(steps)));
-    q.push_back(std::log(error_q));
-    v.push_back(std::log(error_v));
-    driven.push_back(std::log(std::abs(r.state.work.driven - motion.end.work.driven)));
-  }
-  BOOST_TEST_REQUIRE(q.size() >= 5u);
-  const auto tail = [](const std::vector<double>& x) {
-    return Vec(Eigen::Map<const Vec>(x.data() + std::ssize(x) - 5, 5));
-  };
-  return {slope(tail(h), tail(q)), slope(tail(h), tail(v)), slope(tail(h), tail(driven))};
-}
-
 bool is_driven(const Method& m) { return !m.asks(Need::autonomous) && !m.asks(Need::split_forces); }
 std::vector<Method> of_fixed_steps() {
   return methods_where(
@@ -140,14 +110,15 @@ BOOST_DATA_TEST_CASE(every_method_keeps_its_order, of_fixed_steps(), method) {
   const double more = is_long ? 4 : method.name == "rk8" ? 1.2 : slack + 0.1;
   double least_driven = INFINITY;
   for (const DrivenMotion& motion : motions_for(method)) {
-    const Orders observed = observed_orders(method, motion);
-    least_driven = std::min(least_driven, observed.driven);
+    const Orders observed =
+        observed_orders(method, *motion.system, motion.start, motion.end, &Work::driven);
+    least_driven = std::min(least_driven, observed.work);
     BOOST_TEST_CONTEXT(motion.name << ", in q " << observed.q << ", in v " << observed.v
-                                   << ", in the work of driving " << observed.driven) {
+                                   << ", in the work of driving " << observed.work) {
       BOOST_TEST(std::min(observed.q, observed.v) > method.order - slack);
       BOOST_TEST(std::max(observed.q, observed.v) < method.order + more);
       // Errors of one number may cancel, which makes them fall faster, and slower afterwards.
-      BOOST_TEST(observed.driven > method.order - 2.7 * slack);
+      BOOST_TEST(observed.work > method.order - 2.7 * slack);
     }
   }
   // So no more than one of two motions is without an error of the method's own order.
@@ -303,6 +274,20 @@ BOOST_AUTO_TEST_CASE(exact_is_right_to_rounding_also_at_resonance) {
                  (70 + steps) * machine_epsilon * size);
       BOOST_TEST(std::abs(balance(*system, p.initial, r.state)) <
                  1e-13 * (oscillator.energy() + std::abs(r.state.work.driven)));
+    }
+  }
+}
+
+// Several modes, driven by harmonics, polynomials and loads, in air and without.
+BOOST_AUTO_TEST_CASE(exact_drives_all_modes_at_any_step) {
+  for (const DrivenMotion& motion : motions_for(method_named("exact"))) {
+    for (const double h : {1.0, 0.3, 0.01}) {
+      const Run r = run(method_named("exact"), *motion.system, motion.start, 1, {.step_size = h});
+      BOOST_TEST_REQUIRE(r.summary.message == "");
+      // The pair's tolerance of 1e-15 a step, in some thousand steps.
+      BOOST_TEST(distance(r.state, motion.end) < 1e-11, motion.name);
+      BOOST_TEST(std::abs(r.state.work.driven - motion.end.work.driven) < 1e-10);
+      BOOST_TEST(std::abs(r.state.work.dissipated - motion.end.work.dissipated) < 1e-10);
     }
   }
 }

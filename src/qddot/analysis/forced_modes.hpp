@@ -7,8 +7,9 @@
 
 namespace qddot {
 
-// What forces of time do to modes in one duration h. A mode y'' = -w^2 y - 2 gamma y' + u(s) starts
-// from rest. The force u is a solution of a linear equation of its own, which is appended:
+// The response of modes to forces of time, in one duration h. A mode y'' = -w^2 y - 2 gamma y' +
+// u(s) starts from rest. The force u is a solution of a linear equation of its own, which is
+// appended:
 //   u = sin(W s + theta):  (u, c)' = (W c, -W u);   u = s^k/k!:  u_k' = u_{k-1}
 // So y(h) and y'(h) are in the exponential of a small matrix, for each mode and each W, by scaling
 // and squaring (see ExponentialMotion). A resonance W = w is no special case.

@@ -25,7 +25,7 @@ struct Summary {
   // The energy [J] that was lost by the end of the run, and that part of the energy which its
   // motion can turn into speed (EnergyChange); zero if none was lost.
   double energy_lost = 0, energy_loss = 0;
-  // What damping took and driving gave in the run [J]; that is no loss or gain of the method.
+  // The work of damping and driving in the run [J]; that is no loss or gain of the method.
   Work work{};
 };
 

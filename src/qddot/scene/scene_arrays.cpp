@@ -104,6 +104,12 @@ Scene scene_of(const SceneArrays& arrays) {
   scene.air_damping = arrays.air_damping;
   scene.nodes = nodes_of(arrays);
   scene.springs = springs_of(arrays, scene.nodes);
+  scene.curves = arrays.curves;
+  scene.gravity_curve = arrays.gravity_curve;
+  const std::vector<int>& curves = arrays.curve_of_node;
+  require_size(curves.empty() || curves.size() == scene.nodes.size(), "curve_of_node",
+               std::ssize(curves), fmt::format("{}", scene.nodes.size()));
+  for (std::size_t i = 0; i < curves.size(); ++i) scene.nodes[i].curve = curves[i];
   validate(scene, scene.name);
   return scene;
 }

@@ -23,6 +23,10 @@ struct SceneArrays {
   Eigen::VectorXd quartic{};      // [N/m^3], likewise; empty: none
   Eigen::VectorXd damping{};      // of dashpots [N s/m], likewise; empty: none
   double air_damping = 0;         // [1/s]
+  // Curves of time, the number of that of each node or -1, and that of gravity; see Scene.
+  std::vector<TimeCurve> curves{};
+  std::vector<int> curve_of_node{};  // empty: none has one
+  int gravity_curve = -1;
 };
 
 // Makes the scene of these arrays. Throws InvalidInput, in a sentence that names array and entry,

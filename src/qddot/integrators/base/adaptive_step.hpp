@@ -71,7 +71,7 @@ class AdaptiveStep : public Stepper, protected Formula {
   bool can_show(double t);
   // Whether the polynomial through the instants follows the motion after `from`, one of them.
   bool is_trusted(std::span<const Instant* const> instants, const Instant& from);
-  // What driving gives from an instant to t [J], on the polynomial through the instants.
+  // The work of driving from an instant to t [J], on the polynomial through the instants.
   double work_between(std::span<const Instant* const> instants, double from, double t);
   // The state at t by separate steps from that instant.
   Outcome step_aside(const Instant& from, double t, State& state);

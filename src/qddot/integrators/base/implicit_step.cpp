@@ -208,7 +208,7 @@ Work ImplicitStep::stage_power(const Vec& q) {
   const At at = at_friction(q);
   const std::optional<double> secant = find_secant_friction();
   if (!secant) return power(at);
-  // What supports give to dashpots is by velocities: it differs by the formula's own error.
+  // The work of supports on dashpots is by velocities: it differs by the formula's own error.
   Work of_driving;
   if (const Driving* driving = system().driving()) of_driving = driving->driving_power(at);
   return {.dissipated = *secant, .driven = of_driving.driven};

@@ -95,7 +95,7 @@ void SymmetricMultistep::begin_from(X& x) {
   }
 }
 
-// What driving gives in step j of the last `steps` [J]. It is exact for polynomials through the
+// The work of driving in step j of the last `steps` [J]. It is exact for polynomials through the
 // powers at all their ends, so that work has the order of the positions.
 Work SymmetricMultistep::work_of_step(Index j) const {
   Work work;
