@@ -73,6 +73,7 @@ class Verlet final : public Formula {
     }
     if (is_driven()) {
       next.driving = driving_power();
+      if (!is_damped()) next.work = x.work;
       next.work += h / 2 * (x.driving + next.driving);
     }
     return Outcome::reached_end;
@@ -89,7 +90,6 @@ class Verlet final : public Formula {
 
  private:
   void step_undamped(const X& x, double h, X& next) {
-    next.work = x.work;
     const Mass& mass = system().mass();
     if (options().compensated) {
       v_.add_quotient(x.v, h / 2, x.f, mass, next.v);

@@ -33,7 +33,7 @@ void KickDrift::begin(const State& state, X& x) {
 }
 
 Outcome KickDrift::step(const X& now, double h, X& next) {
-  next.work = now.work;
+  if (does_work()) next.work = now.work;
   if (options().compensated || is_damped()) {
     step_compensated(now, h, next);
   } else if (kicks_first_) {

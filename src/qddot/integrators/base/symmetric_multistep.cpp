@@ -183,8 +183,8 @@ Outcome SymmetricMultistep::step(X& x, double h, X& next) {
     next.newest = (x.newest + std::ssize(u_) - 1) % std::ssize(u_);
     next.has_history = true;
     next.has_velocity = false;
-    next.work = x.work;
     if (is_driven()) {
+      next.work = x.work;
       powers_.erase(powers_.begin());
       powers_.push_back(power({next.t, next.q}));
       next.work += work_of_step(first_.steps() - 1);
