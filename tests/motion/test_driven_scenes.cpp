@@ -223,6 +223,20 @@ BOOST_AUTO_TEST_CASE(supports_alone_have_their_energy_and_work) {
   BOOST_TEST(std::abs(model.energy(end) - model.energy(model.initial())) < 1e-12);
 }
 
+// Gravity does not pull a massless node, so that a series through it is still seen to go slack.
+BOOST_AUTO_TEST_CASE(gravity_in_time_leaves_series_through_massless_nodes) {
+  Scene cable{.dimension = 2, .gravity = {0, -9.81, 0}};
+  cable.curves = {{.harmonics = {{{0, 3, 0}, 5, 0}}}};
+  cable.gravity_curve = 0;
+  cable.nodes = {{.pinned = true},
+                 {.position = {0.5, -0.9, 0}, .mass = 0},
+                 {.position = {1, -1.8, 0}, .mass = 1}};
+  cable.springs = {{{0, 1}, {100, 1}}, {{1, 2}, {100, 1}}};
+  const Model model(cable, Reductions().without(Reduction::massless));
+  BOOST_TEST(model.system().has_massless());
+  BOOST_TEST((model.system().validity() != nullptr));
+}
+
 namespace {
 
 // The growth of y'' = -(d + 2 e sin(2 t)) y in one period pi: the larger |eigenvalue| of the matrix

@@ -178,7 +178,7 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
       const int curve = curves.of_node(i, image.signs.diagonal());
       network.driven_loads.push_back({number, curve, 1, y});
     }
-    if (drawn.gravity_curve >= 0) {
+    if (drawn.gravity_curve >= 0 && drawn.mass[i] > 0) {
       const int curve = curves.number(drawn.gravity_curve, image.signs.diagonal());
       network.driven_loads.push_back({number, curve, drawn.mass[i], y});
     }
