@@ -12,8 +12,8 @@
 
 namespace qddot {
 
-// What depends on time in a network: its moving points with the springs to them, and its driven
-// loads. In dimension D.
+// The parts of a network that depend on time, in dimension D: moving points with the springs to
+// them, and driven loads.
 template <int D>
 class DrivenNetwork {
  public:

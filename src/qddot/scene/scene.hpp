@@ -20,7 +20,8 @@ struct Node {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // [m/s]
   double mass = 0;                                     // [kg], 0 = massless; ignored where pinned
   bool pinned = false;  // stays at its position for ever, unless it has a curve
-  // Of Scene::curves: the displacement from `position` if it is pinned, else a load beside `load`.
+  // An index into Scene::curves, or -1. The curve is the displacement from `position` if the node
+  // is pinned, else a load beside `load`.
   int curve = -1;
   // A constant force beside the weight [N]; a pin carries it.
   Eigen::Vector3d load = Eigen::Vector3d::Zero();

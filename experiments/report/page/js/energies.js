@@ -7,7 +7,7 @@ import { words } from "./words.js";
 
 const KINDS = { kinetic: "#0072B2", potential: "#B35900", total: INK };
 const WORK = { dissipated: "#009E73", driven: "#7B3FA0" };
-// What belongs to the total of damped and driven motions, in words and in symbols.
+// The terms beside the energy in the total of damped and driven motions, in words and in symbols.
 const KEPT = {
   dissipated: ["with what damping has taken", "+ W"],
   driven: ["less what driving has given", "− W driven"],

@@ -33,8 +33,8 @@ struct DrawnPart {
   Fall fall{};                  // the frame that v and gravity are seen from, see let_fall
   double air_damping = 0;       // alpha [1/s], set by the caller
   bool offers_split = false;    // whether its system is to offer Split
-  // Of the scene, where anything in the part depends on time: its curves, and that of each node and
-  // of gravity, or -1; see Scene.
+  // The scene's curves, if anything in the part depends on time, and the curve of each node and of
+  // gravity, or -1; see Scene.
   std::vector<TimeCurve> curves{};
   std::vector<int> curve_of{};
   int gravity_curve = -1;
