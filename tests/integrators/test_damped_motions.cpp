@@ -114,21 +114,8 @@ BOOST_DATA_TEST_CASE(every_method_keeps_its_order, of_fixed_steps(), method) {
 // Each step is within the tolerance, and the energy that damping takes follows the motion.
 BOOST_DATA_TEST_CASE(methods_that_choose_steps_are_within_their_tolerance, of_chosen_steps(),
                      method) {
-  for (const DampedMotion& motion : motions_for(method)) {
-    double last = INFINITY;
-    for (const double rtol : {1e-4, 1e-6, 1e-8}) {
-      const Run r = run(method, *motion.system, motion.start, 1, {.rtol = rtol});
-      BOOST_TEST_REQUIRE(r.summary.message == "");
-      // As in the suite `order`: multistep methods err by up to 1100 tolerances.
-      const double most = (method.varies_order() ? 2000 : 100) * rtol;
-      const double error = distance(r.state, motion.end);
-      BOOST_TEST(error < most);
-      // Friction takes some 4 J, at rates of up to 20 W.
-      BOOST_TEST(std::abs(r.state.work.dissipated - motion.end.work.dissipated) < 10 * most);
-      BOOST_TEST(error < last);
-      last = error;
-    }
-  }
+  for (const DampedMotion& motion : motions_for(method))
+    check_tolerances(method, *motion.system, motion.start, motion.end);
 }
 
 BOOST_DATA_TEST_CASE(a_method_that_takes_no_dashpots_says_why_and_what_to_take, all_methods(),

@@ -42,5 +42,24 @@ inline Orders observed_orders(const Method& method, const System& system, const 
   return {slope(tail(h), tail(q)), slope(tail(h), tail(v)), slope(tail(h), tail(work))};
 }
 
+// Checks that a method that chooses its steps is within its tolerance, in the motion and in the
+// work taken. `end`: the exact state at 1 s.
+inline void check_tolerances(const Method& method, const System& system, const State& start,
+                             const State& end) {
+  double last = INFINITY;
+  for (const double rtol : {1e-4, 1e-6, 1e-8}) {
+    const Run r = run(method, system, start, 1, {.rtol = rtol});
+    BOOST_TEST_REQUIRE(r.summary.message == "");
+    // As in the suite `order`: multistep methods err by up to 1100 tolerances.
+    const double most = (method.varies_order() ? 2000 : 100) * rtol;
+    const double error = distance(r.state, end);
+    BOOST_TEST(error < most);
+    // Friction takes some 4 J, at rates of up to 20 W.
+    BOOST_TEST(std::abs(r.state.work.taken() - end.work.taken()) < 10 * most);
+    BOOST_TEST(error < last);
+    last = error;
+  }
+}
+
 }  // namespace tests
 }  // namespace qddot
