@@ -180,7 +180,7 @@ void print_verdicts(const std::vector<DriftRun>& runs, double until) {
     const bool fixed = run.method->knob == Knob::step_size;
     const std::string who =
         fixed ? run.method->name : fmt::format("{} {:g}", run.method->name, run.value);
-    const auto [taken, given] = run.summary.work;
+    const double taken = run.summary.work.dissipated, given = run.summary.work.driven;
     fmt::print("{:<30} {}{}{}\n", who, verdict(run, until),
                taken > 0 ? fmt::format("; damping took {:.4g} J beside that", taken) : "",
                given != 0 ? fmt::format("; driving gave {:.4g} J beside that", given) : "");

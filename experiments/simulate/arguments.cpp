@@ -68,7 +68,8 @@ void require_distinct_outputs(const Arguments& a) {
   };
   for (const auto& [option, path] :
        {std::pair("--final", a.final_path), std::pair("--trajectory", a.trajectory_path),
-        std::pair("--energy", a.energy_path)}) {
+        std::pair("--energy", a.energy_path), std::pair("--breaks", a.breaks_path),
+        std::pair("--strain", a.strain_path)}) {
     if (!path.is_given()) continue;
     require_given(path, option, "the name of a CSV file");
     take(option, path, {path, sidecar_of(path)});
@@ -92,7 +93,8 @@ bool only_writes_scene(const Program& program) {
   const auto given = [&](const char* option) { return program.has(option); };
   constexpr std::array of_a_run = {"--method", "--accuracy", "--step-size",     "--rtol",
                                    "--atol",   "--until",    "--final",         "--trajectory",
-                                   "--energy", "--motion",   "--motion-fields", "--every"};
+                                   "--energy", "--motion",   "--motion-fields", "--every",
+                                   "--breaks", "--strain"};
   return given("--write-scene") && std::ranges::none_of(of_a_run, given);
 }
 

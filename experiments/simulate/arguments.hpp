@@ -31,8 +31,17 @@ struct Arguments {
       p.word("--trajectory", "CSV of all nodes over time: t,node,x,...");
   Argument<std::string> energy_path = p.word("--energy",
                                              "CSV of t,kinetic,potential,total, of damped scenes "
-                                             "dissipated, of driven ones driven, and of "
-                                             "both balance");
+                                             "dissipated, of driven ones driven, of ones "
+                                             "that may break released, and of all these "
+                                             "balance");
+  Argument<std::string> breaks_path =
+      p.word("--breaks",
+             "CSV of the springs that broke: t,spring,node,other_node,strain,energy, "
+             "and with --accuracy t_error, a bound of the time's error");
+  Argument<std::string> strain_path =
+      p.word("--strain",
+             "CSV of the extreme strains and tensions of each spring on the way, and "
+             "when they were");
   Argument<std::string> motion_path =
       p.word("--motion",
              "all nodes over time in 32-bit floats, with springs and faces: .vtkhdf for "

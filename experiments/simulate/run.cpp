@@ -15,6 +15,7 @@
 #include "experiments/simulate/outputs.hpp"
 #include "experiments/simulate/pace.hpp"
 #include "qddot/integrators/option_table.hpp"
+#include "qddot/integrators/spring_changes.hpp"
 #include "qddot/measure/advice/solve.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/samples.hpp"
@@ -53,6 +54,35 @@ void refuse_choices(const Program& program) {
           option));
     }
   }
+}
+
+// The scene's choice. Strains are seen at each step, and parts have steps of their own.
+SceneChoice choice_of(const Arguments& a) {
+  SceneChoice choice = *a.scene;
+  if (a.strain_path.is_given()) choice.no_reduce.emplace_back("parts");
+  return choice;
+}
+
+// The changes of springs' phases in a run, in words; empty if there were none.
+std::string changes_in_words(const Method& method, const Model& scene, const Summary& summary) {
+  const auto count = [](std::size_t n, const char* one) {
+    return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
+  };
+  std::string words;
+  const std::size_t breaks = summary.breaks.size();
+  if (breaks > 0)
+    words = fmt::format("{} broke, the first at t = {:.6g} s", count(breaks, "spring"),
+                        summary.breaks.front().t);
+  const std::size_t others = static_cast<std::size_t>(summary.phase_changes) - breaks;
+  if (others > 0)
+    words += fmt::format("{}cables went slack or taut at {}, where steps ended",
+                         words.empty() ? "" : "; ", count(others, "moment"));
+  if (steps_over_slack(method.order, scene.system()))
+    words += fmt::format(
+        "{}{} steps over the moments at which cables go slack or taut, with an "
+        "error of its own order, {}",
+        words.empty() ? "" : "; ", method.name, method.order);
+  return words;
 }
 
 // Repeats the run that was judged for the outputs on its way. Steps may end at these, and then the
@@ -117,7 +147,7 @@ int answer(const Arguments& a) {
   const AccuracyOf of = accuracy_of(a.accuracy_of);
   const Every every = every_of(a);
   require_distinct_outputs(a);
-  Subject subject = subject_of(a.scene, a.until);
+  Subject subject = subject_of(choice_of(a), a.until);
   const auto model = std::make_shared<const Model>(std::move(subject.model));
   const double until = subject.until;
 
@@ -140,7 +170,7 @@ int answer(const Arguments& a) {
     origin["energy_loss"] = answer.summary.energy_loss;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     origin.update(about(answer, a));
-    output.finish(answer.end, origin);
+    output.finish(answer.end, answer.summary.breaks, answer.break_errors, origin);
   }
   fmt::print(
       "{} to t = {:g} s: {} at {}; {}; {} for the run, {} for its check, {} to find them "
@@ -169,7 +199,7 @@ int run_method(const Arguments& a) {
   const Scene& start = settled ? *settled : drawn;
   const auto model = [&] {
     const Reducing reducing(start);
-    return std::make_shared<const Model>(reduced_for(method, start, reductions_of(a.scene)));
+    return std::make_shared<const Model>(reduced_for(method, start, reductions_of(choice_of(a))));
   }();
   const Model& scene = *model;
   require_fit(method, scene, a.scene->name);
@@ -198,11 +228,13 @@ int run_method(const Arguments& a) {
     origin["energy_loss"] = summary.energy_loss;
     origin["seconds"] = seconds;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
-    output.finish(run.state(), origin);
+    output.finish(run.state(), summary.breaks, {}, origin);
   }
   fmt::print("{} on {}: {} at t = {:g} s after {}, in {:.3g} s\n", method.name,
              in_one_line(drawn.name), why ? "interrupted" : name(summary.outcome),
              summary.t_reached, counts_in_words(summary.counts), seconds);
+  if (const std::string words = changes_in_words(method, scene, summary); !words.empty())
+    fmt::print("{}\n", words);
   if (why) {
     fmt::print(stderr, "simulate: interrupted by {}: {} of {} s reached\n", why->by,
                summary.t_reached, until);

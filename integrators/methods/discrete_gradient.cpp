@@ -50,10 +50,11 @@ class EnergyMomentum final : public ImplicitStep {
       work.dissipated = h * stage_power(now.q).dissipated;
       if (is_driven()) work.driven = h * driving_power().dissipated;
     }
-    if (const Driving* driving = system().driving()) {
+    if (is_driven()) {
+      const CountedSystem& counted = run_.counted();
       const double middle = now.t + h / 2;
-      work.driven += driving->potential_change(now.t, middle, now.q) +
-                     driving->potential_change(middle, next.t, next.q);
+      work.driven += counted.potential_change(now.t, middle, now.q) +
+                     counted.potential_change(middle, next.t, next.q);
     }
     return work;
   }

@@ -100,7 +100,7 @@ class Relaxed final : public Arkode {
   void start(const State& state) override {
     Arkode::start(state);
     const double speed = options().speed;
-    const double v0 = system().potential(state);
+    const double v0 = run_.counted().potential(state);
     const double size =
         std::abs(v0) + kinetic_energy(state.v) + system().mass().sum() * speed * speed / 2;
     per_size_ = 1 / std::max(size, std::numeric_limits<double>::min());
@@ -109,7 +109,7 @@ class Relaxed final : public Arkode {
     for (int sample = 0; sample < samples; ++sample) {
       Vec q = state.q;
       for (double& x : q) x *= 1 + (random() % 2 ? 1 : -1) * machine_epsilon;
-      change = std::max(change, std::abs(system().potential({state.t, q, state.v}) - v0));
+      change = std::max(change, std::abs(run_.counted().potential({state.t, q, state.v}) - v0));
     }
     check(ARKodeSetRelaxResTol(memory(), std::max(rounding, roundings_of_q * per_size_ * change)),
           "ARKodeSetRelaxResTol");
@@ -129,7 +129,8 @@ class Relaxed final : public Arkode {
     auto& self = *static_cast<Relaxed*>(static_cast<Library*>(user));
     return self.guarded([&] {
       const Halves at(y);
-      *e = self.per_size_ * (self.kinetic_energy(at.v) + self.system().potential({0, at.q, at.v}));
+      *e = self.per_size_ *
+           (self.kinetic_energy(at.v) + self.run_.counted().potential({0, at.q, at.v}));
       if (!self.iterate_) {
         self.e_old_ = *e;
         self.change_ = std::numeric_limits<double>::infinity();

@@ -28,7 +28,8 @@ Eigen::MatrixXd matrix_of(const Doubles& array, const char* name) {
 Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles& mass,
                  const Doubles& stiffness, const Indices& pinned, const Given& gravity,
                  const Given& velocities, const Given& load, const Given& rest_length,
-                 const Given& quartic, const Given& damping, double air_damping,
+                 const Given& quartic, const Given& damping, const Given& cubic,
+                 const Given& breaks_at, const Given& pulls_only, double air_damping,
                  const py::list& curves, const Indices& curve_of_node, int of_gravity) {
   SceneArrays a;
   const auto node = [](std::int64_t number, const char* name) {
@@ -53,6 +54,9 @@ Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles
   if (rest_length) a.rest_length = vec_of(*rest_length);
   if (quartic) a.quartic = vec_of(*quartic);
   if (damping) a.damping = vec_of(*damping);
+  if (cubic) a.cubic = vec_of(*cubic);
+  if (breaks_at) a.breaks_at = vec_of(*breaks_at);
+  if (pulls_only) a.pulls_only = vec_of(*pulls_only);
   a.air_damping = air_damping;
   set_curves(curves, curve_of_node, of_gravity, a);
   return scene_of(a);
@@ -230,24 +234,25 @@ void add_scenes(py::module_& module) {
   scene.def_static("generate", [=](const std::string& name, const GeneratorValues& values) {
     return shared(generate(generator_named(name), values, name));
   });
-  scene.def_static("from_arrays",
-                   [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
-                       const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                       const Given& velocities, const Given& load, const Given& rest_length,
-                       const Given& quartic, const Given& damping, double air_damping,
-                       const std::string& name, std::optional<double> until,
-                       std::optional<double> stiff_above, bool starts_at_equilibrium,
-                       const py::list& curves, const Indices& curve_of_node, int of_gravity) {
-                     Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity,
-                                             velocities, load, rest_length, quartic, damping,
-                                             air_damping, curves, curve_of_node, of_gravity);
-                     made.name = name;
-                     made.until = until;
-                     made.stiff_above = stiff_above;
-                     made.starts_at_equilibrium = starts_at_equilibrium;
-                     validate(made, name);
-                     return shared(std::move(made));
-                   });
+  scene.def_static(
+      "from_arrays", [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
+                         const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+                         const Given& velocities, const Given& load, const Given& rest_length,
+                         const Given& quartic, const Given& damping, const Given& cubic,
+                         const Given& breaks_at, const Given& pulls_only, double air_damping,
+                         const std::string& name, std::optional<double> until,
+                         std::optional<double> stiff_above, bool starts_at_equilibrium,
+                         const py::list& curves, const Indices& curve_of_node, int of_gravity) {
+        Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity, velocities,
+                                load, rest_length, quartic, damping, cubic, breaks_at, pulls_only,
+                                air_damping, curves, curve_of_node, of_gravity);
+        made.name = name;
+        made.until = until;
+        made.stiff_above = stiff_above;
+        made.starts_at_equilibrium = starts_at_equilibrium;
+        validate(made, name);
+        return shared(std::move(made));
+      });
   // The scene as its motion starts: with its nodes at equilibrium if it starts there.
   scene.def("started", [=](const Shared& self) {
     return self->starts_at_equilibrium ? shared(settled(*self, self->name)) : self;
@@ -296,6 +301,11 @@ void add_scenes(py::module_& module) {
   of_springs("rest_length", &SpringLaw::rest_length);
   of_springs("quartic", &SpringLaw::quartic);
   of_springs("damping", &SpringLaw::damping);
+  of_springs("cubic", &SpringLaw::cubic);
+  of_springs("breaks_at", &SpringLaw::breaks_at);
+  has("pulls_only", [](const Scene& s) {
+    return column<bool>(s.springs, [](const Spring& one) { return one.law.pulls_only; });
+  });
   module.def("generators", &generator_records);
 }
 

@@ -33,6 +33,9 @@ class Scene:
         rest_length: _Floats | None,
         quartic: _Floats | None,
         damping: _Floats | None,
+        cubic: _Floats | None,
+        breaks_at: _Floats | None,
+        pulls_only: _Floats | None,
         air_damping: float,
         name: str,
         until: float | None,
@@ -86,6 +89,12 @@ class Scene:
     def quartic(self) -> _Floats: ...
     @property
     def damping(self) -> _Floats: ...
+    @property
+    def cubic(self) -> _Floats: ...
+    @property
+    def breaks_at(self) -> _Floats: ...
+    @property
+    def pulls_only(self) -> NDArray[np.bool_]: ...
     @property
     def air_damping(self) -> float: ...
 

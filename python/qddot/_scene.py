@@ -85,8 +85,10 @@ class Scene:
     """A network of masses and springs, immutable.
 
     positions: (nodes, dimension) [m], dimension 1, 2 or 3. springs: (springs, 2), the nodes of
-    each, from 0. stiffness [N/m], rest_length [m] (default: as drawn), quartic [N/m^3] and damping
-    [N s/m], of a dashpot along it (defaults: none): of each spring, or one for all. air_damping
+    each, from 0. stiffness [N/m], rest_length [m] (default: as drawn), cubic [N/m^2], quartic
+    [N/m^3] and damping [N s/m], of a dashpot along it (defaults: none): of each spring, or one for
+    all. pulls_only: whether a spring is a cable, without any force below its rest length.
+    breaks_at: the strain at which it breaks (default: never). Likewise of each, or one. air_damping
     [1/s]: alpha of the air's force -alpha m v on each node. mass [kg]: of each node, or one for
     all; 0 is massless.
     pinned: the fixed nodes, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
@@ -119,6 +121,9 @@ class Scene:
         rest_length: ArrayLike | None = None,
         quartic: ArrayLike | None = None,
         damping: ArrayLike | None = None,
+        cubic: ArrayLike | None = None,
+        breaks_at: ArrayLike | None = None,
+        pulls_only: ArrayLike | None = None,
         air_damping: float = 0,
         name: str = "scene",
         until: float | None = None,
@@ -165,6 +170,9 @@ class Scene:
                 None if rest_length is None else floats(rest_length, "rest_length", one=True),
                 None if quartic is None else floats(quartic, "quartic", one=True),
                 None if damping is None else floats(damping, "damping", one=True),
+                None if cubic is None else floats(cubic, "cubic", one=True),
+                None if breaks_at is None else floats(breaks_at, "breaks_at", one=True),
+                None if pulls_only is None else floats(pulls_only, "pulls_only", one=True),
                 number(air_damping, "air_damping"),
                 str(name),
                 None if until is None else number(until, "until"),
@@ -220,6 +228,8 @@ class Scene:
         until: float | None = None,
         damping_time: float | None = None,
         air_damping: float | None = None,
+        pulls_only: bool = False,
+        breaks_at: float | None = None,
     ) -> Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh, .ply, .stl): every edge is a spring at
         its rest length. Masses come from node_mass or total_mass [kg], or from density: [kg/m^3] of
@@ -228,7 +238,8 @@ class Scene:
         then `shift` [m] is added. `velocity` [m/s]: of all nodes at the start. `pins`: the nodes
         that are fixed, each entry a box (min, max), the name or tag of a group, or an array of
         nodes. `loads`: pairs of such nodes and the force on each of them [N]. `damping_time` [s]:
-        that of a dashpot along each edge, over the edge's stiffness; `air_damping` [1/s]."""
+        that of a dashpot along each edge, over the edge's stiffness; `air_damping` [1/s]. `pulls_only`: whether edges are cables;
+        `breaks_at`: the strain at which each breaks."""
         path = os.path.abspath(os.fspath(file))
         stem = os.path.splitext(os.path.basename(path))[0]
         lines = [f"name = {_quoted(stem)}"]
@@ -247,7 +258,10 @@ class Scene:
             weld=weld,
             damping_time=damping_time,
             air_damping=air_damping,
+            breaks_at=breaks_at,
         )
+        if pulls_only:
+            lines.append("pulls_only = true")
         lines += [f"{name} = {float(x)!r}" for name, x in numbers.items() if x is not None]
         vectors = dict(rotation=rotation, shift=shift, velocity=velocity)
         lines += [f"{name} = {_list(x)}" for name, x in vectors.items() if x is not None]
@@ -279,6 +293,9 @@ class Scene:
     rest_length: Floats = _of_handle("rest_length", "(springs) [m].")
     quartic: Floats = _of_handle("quartic", "(springs) [N/m^3].")
     damping: Floats = _of_handle("damping", "(springs), of their dashpots [N s/m].")
+    cubic: Floats = _of_handle("cubic", "(springs) [N/m^2].")
+    breaks_at: Floats = _of_handle("breaks_at", "(springs), the strain at which each breaks.")
+    pulls_only: NDArray[np.bool_] = _of_handle("pulls_only", "(springs), whether it is a cable.")
     air_damping: float = _of_handle("air_damping", "alpha of the force -alpha m v [1/s].")
 
     @property
@@ -309,7 +326,7 @@ class Scene:
         """The same scene with these arguments of Scene() replaced."""
         names = (
             "positions springs stiffness mass pinned gravity velocities load rest_length quartic "
-            "damping air_damping name until stiff_above starts_at_equilibrium motion load_in_time "
+            "damping cubic breaks_at pulls_only air_damping name until stiff_above starts_at_equilibrium motion load_in_time "
             "gravity_in_time"
         ).split()
         for name in changes:

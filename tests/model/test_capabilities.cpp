@@ -16,7 +16,7 @@ namespace {
 struct Offers {
   bool stiffness = false, split_stiffness = false, discrete_gradient = false, laplacian = false,
        pieces = false, validity = false, kinks = false, damping = false, driving = false,
-       blocks = false, split = false;
+       switching = false, blocks = false, split = false;
   bool operator==(const Offers&) const = default;
 };
 Offers offers_of(const System& s) {
@@ -29,6 +29,7 @@ Offers offers_of(const System& s) {
           s.kinks() != nullptr,
           s.damping() != nullptr,
           s.driving() != nullptr,
+          s.switching() != nullptr,
           !s.blocks().empty(),
           s.split() != nullptr};
 }
@@ -66,11 +67,29 @@ class Offering final : public CapableSystem {
   const Driving* driving() const override { return offers_.driving ? this : nullptr; }
   bool is_autonomous() const override { return !offers_.driving; }
   Work driving_power(const At& at) const override { return {.driven = at.q[0]}; }
-  double potential_change(double from, double to, const VecView& q) const override {
-    return (to - from) * q[0];
+  double potential_change(double from, double to, const At& at) const override {
+    return (to - from) * at.q[0];
   }
   void force_rate(const At&, MutableVec rate) const override { rate[0] = -1; }
   std::vector<Corner> corners() const override { return {{2, 1}, {3, 3}}; }
+  const Switching* switching() const override { return offers_.switching ? this : nullptr; }
+  Index phase_count() const override { return 1; }
+  std::optional<int> order_of_slack() const override { return 1; }
+  void set_phases(const At& at, bool, std::span<Phase> phases) const override {
+    phases[0] = at.q[0] < 1 ? Phase::slack : Phase::taut;
+  }
+  std::optional<Change> first_change(const State& from, const State& to, std::span<const Phase>,
+                                     const Recent&) const override {
+    if ((from.q[0] < 1) == (to.q[0] < 1)) return {};
+    return Change{to.t, 0, to.q[0] < 1 ? Phase::slack : Phase::taut};
+  }
+  Margin margin(const At& at, int, Phase) const override { return {at.q[0] - 1, at.v[0], 0}; }
+  void add_due_changes(const At& at, std::span<const Phase>,
+                       std::vector<Change>& due) const override {
+    if (at.q[0] == 1) due.push_back({at.t, 0, Phase::slack});
+  }
+  double energy_of(const At& at, int) const override { return at.q[0]; }
+  double strain_of(const At& at, int) const override { return at.q[0] - 1; }
   void friction(const At& at, MutableVec f) const override { f = -at.v; }
   void damping_matrix(const At&, SymmetricMatrix& c) const override { c.coeffs()[0] = 1; }
   bool damping_is_constant() const override { return true; }
@@ -107,6 +126,7 @@ constexpr Offers each[] = {{},
                            {.kinks = true},
                            {.stiffness = true, .damping = true},
                            {.driving = true},
+                           {.switching = true},
                            {.split = true}};
 
 // Systems that offer these, and networks.

@@ -80,8 +80,8 @@ void check_against_plain(const Network& network, const Vec& q) {
 Neighbours neighbours_in(const Network& network) {
   return neighbours_of(static_cast<int>(network.node_mass.size()), [&](const auto& see) {
     for (const auto& link : network.links) {
-      see(link.i, link.j, link.law);
-      see(link.j, link.i, link.law);
+      see(link.i, link.j, link.law.plain());
+      see(link.j, link.i, link.law.plain());
     }
   });
 }
@@ -255,7 +255,7 @@ BOOST_AUTO_TEST_CASE(slots_hold_every_spring_once_from_each_end) {
       }
       for (int i = 0; i < neighbours.nodes(); ++i) {
         for (int e = neighbours.first[i]; e < neighbours.first[i + 1]; ++e) {
-          const SpringLaw& law = neighbours.laws[neighbours.ends[e].law];
+          const PlainLaw& law = neighbours.laws[neighbours.ends[e].law];
           listed.emplace_back(i, neighbours.ends[e].point, law.stiffness, law.rest_length);
         }
       }

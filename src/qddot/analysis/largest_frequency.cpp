@@ -7,6 +7,7 @@
 
 #include "qddot/algebra/dense_pairs.hpp"
 #include "qddot/algebra/leading_pairs.hpp"
+#include "qddot/model/capabilities.hpp"
 
 namespace qddot {
 namespace {
@@ -40,10 +41,24 @@ double bound_by(const Vec& row_sums, const Vec& mass) {
   return std::sqrt(largest);
 }
 
+// The phases in which every cable pulls: no others make a system stiffer.
+std::vector<Phase> all_taut(const System& system) {
+  if (!system.switching()) return {};
+  return std::vector<Phase>(static_cast<std::size_t>(system.switching()->phase_count()),
+                            Phase::taut);
+}
+
+At taut_at(const Vec& q, const std::vector<Phase>& phases) {
+  At at(q);
+  if (!phases.empty()) at.phases = phases.data();
+  return at;
+}
+
 SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
   require_stiffness(system);
   SymmetricMatrix k = system.stiffness_pattern();
-  system.stiffness(q, k);
+  const std::vector<Phase> phases = all_taut(system);
+  system.stiffness(taut_at(q, phases), k);
   return k;
 }
 
@@ -141,7 +156,8 @@ double quick_frequency(const System& system, const Vec& q) {
 double frequency_bound(const System& system, const Vec& q) {
   require_stiffness(system);
   Vec row_sums;
-  if (system.bound_row_sums(q, row_sums)) return bound_by(row_sums, system.mass());
+  const std::vector<Phase> phases = all_taut(system);
+  if (system.bound_row_sums(taut_at(q, phases), row_sums)) return bound_by(row_sums, system.mass());
   return frequency_bound(system.mass(), stiffness_at(system, q), row_sums);
 }
 

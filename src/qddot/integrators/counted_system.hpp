@@ -23,6 +23,8 @@ class CountedSystem {
         discrete_gradient_(system.discrete_gradient()),
         damping_(system.damping()),
         driving_(system.driving()),
+        switching_(system.switching()),
+        is_placed_(driving_ || switching_),
         clock_(is_timed ? &seconds : nullptr) {}
   CountedSystem(const CountedSystem&) = delete;
   CountedSystem& operator=(const CountedSystem&) = delete;
@@ -31,13 +33,15 @@ class CountedSystem {
 
   // Has all places be in the piece of time that this time [s] is in (see At); NaN: in their own.
   void stay_within(double t) { within_ = t; }
+  // Has all places be in these phases of springs (see At), which must outlive it.
+  void stay_in(const Phase* phases) { phases_ = phases; }
 
   // f [N] into `f` (n).
   void force(const At& at, MutableVec f) { force(system_, at, f); }
   void force(const System& part, const At& at, MutableVec f) {
     ++counts.force_evaluations;
     const Stopwatch watch(clock_, &Seconds::force);
-    if (driving_) return driven_force(part, placed(at), f);
+    if (is_placed_) return placed_force(part, placed(at), f);
     if (!damping_ || at.v.size() == 0) return part.force(at, f);
     damped_force(part, at, f);
   }
@@ -70,7 +74,7 @@ class CountedSystem {
   // force's, so a timed run does it before and after.
   double force_beside(const At& at, MutableVec f, BesideForce& beside) {
     const bool is_damped = damping_ && at.v.size() > 0;
-    if (!clock_ && !is_damped && !driving_) {
+    if (!clock_ && !is_damped && !is_placed_) {
       ++counts.force_evaluations;
       return system_.force_beside(at, f, beside);
     }
@@ -78,6 +82,17 @@ class CountedSystem {
     const double sum = sum_force_beside(there, f, beside);
     if (driving_) driven_ = driving_->driving_power(there);
     return sum;
+  }
+  // V [J].
+  double potential(const At& at) const { return system_.potential(placed(at)); }
+  // Damping::secant_friction of a system with Damping.
+  std::optional<double> secant_friction(BackwardRate rate, const ConstVec& v, MutableVec f) const {
+    rate.phases = phases_;
+    return damping_->secant_friction(rate, v, f);
+  }
+  // Driving::potential_change of a system with Driving.
+  double potential_change(double from, double to, const VecView& q) const {
+    return driving_->potential_change(from, to, placed({from, q}));
   }
   // Driving of the system, nullptr if it has none.
   const Driving* driving() const { return driving_; }
@@ -119,8 +134,8 @@ class CountedSystem {
   Seconds seconds;
 
  private:
-  void driven_force(const System& part, const At& at, MutableVec& f) {
-    driven_ = books(part) ? driving_->driving_power(at) : Work{};
+  void placed_force(const System& part, const At& at, MutableVec& f) {
+    if (driving_) driven_ = books(part) ? driving_->driving_power(at) : Work{};
     if (!damping_ || at.v.size() == 0) return part.force(at, f);
     damped_force(part, at, f);
   }
@@ -133,6 +148,7 @@ class CountedSystem {
     }
     At without_velocities(at.t, at.q);
     without_velocities.within = at.within;
+    without_velocities.phases = at.phases;
     part.force(without_velocities, f);
     if (damping) {
       set_friction(*damping, at);
@@ -161,6 +177,7 @@ class CountedSystem {
   }
   At placed(At at) const {
     at.within = within_;
+    at.phases = phases_;
     return at;
   }
   // Whether the force of the part books what driving gives: that of the whole, or the soft half.
@@ -179,8 +196,11 @@ class CountedSystem {
   const DiscreteGradient* discrete_gradient_;
   const Damping* damping_;
   const Driving* driving_;
+  const Switching* switching_;
+  const bool is_placed_;  // whether forces depend on the piece of time or on phases
   Seconds* clock_;
   double within_ = std::numeric_limits<double>::quiet_NaN();
+  const Phase* phases_ = nullptr;
   Vec friction_;
   double power_ = 0;
   Work driven_{};  // rates

@@ -53,7 +53,7 @@ void EnergyGrowth::start(const State& state) {
   t_ = state.t;
   fastest_ = {kinetic, state};
   farthest_ = {0, state};
-  lowest_ = system_.potential({state.t, state.q});
+  lowest_ = potential(state);
   start_ = most_ = kinetic + lowest_ + state.work.taken();
   driven_ = 0;
 }
@@ -83,7 +83,7 @@ void EnergyGrowth::look(const State& state, double work) {
   propose(fastest_, system_.kinetic(state.v), state);
   propose(farthest_, (state.q - q_).squaredNorm(), state);
   if (!is_dear && work < next_energy_) return;
-  see(state);
+  see_present(state);
   next_energy_ = work + drawn() * work_an_energy;
 }
 
@@ -91,10 +91,18 @@ void EnergyGrowth::propose(Candidate& candidate, double size, const State& state
   if (!(size > grown * candidate.size)) return;
   candidate.size = size;
   candidate.state = state;
+  candidate.state.phases = phases_;
+}
+
+double EnergyGrowth::see_present(const State& state) {
+  if (!phases_) return see(state);
+  State present = state;
+  present.phases = phases_;
+  return see(present);
 }
 
 double EnergyGrowth::see(const State& state) {
-  const double potential = system_.potential({state.t, state.q});
+  const double potential = this->potential(state);
   const double energy = system_.kinetic(state.v) + potential + state.work.taken();
   driven_ = std::max(driven_, std::abs(state.work.driven));
   most_ = std::max(most_, std::isfinite(energy) ? energy : largest);
@@ -121,7 +129,7 @@ EnergyChange EnergyGrowth::change(const State& state) {
   if (!is_conserved_) return {};
   see(fastest_.state);
   see(farthest_.state);
-  const double lost = start_ - see(state), gained = most_ - start_;
+  const double lost = start_ - see_present(state), gained = most_ - start_;
   EnergyChange change{.lost = std::max(0.0, lost), .own = start_ - lowest_ + driven_};
   const bool is_own = gained <= change.own;
   if (is_own && change.own > 0) change.growth += gained / change.own;

@@ -38,6 +38,8 @@ class EnergyGrowth {
   explicit EnergyGrowth(const System& system)
       : system_(system), is_conserved_(system.has_potential() && keeps_balance(system)) {}
 
+  // Has the energies of the states from now on be those in these phases (see State).
+  void stay_in(std::shared_ptr<const std::vector<Phase>> phases) { phases_ = std::move(phases); }
   // Begins a new run at `state`.
   void start(const State& state);
   // Call with |v|^2 of the next state.
@@ -58,13 +60,20 @@ class EnergyGrowth {
     double size = 0;
     State state;
   };
+  double potential(const State& state) const {
+    At at(state.t, state.q);
+    if (state.phases) at.phases = state.phases->data();
+    return system_.potential(at);
+  }
   void look_sooner(double squared_speed);
   void propose(Candidate& candidate, double size, const State& state);
-  double see(const State& state);  // returns E
+  double see(const State& state);          // returns E
+  double see_present(const State& state);  // whose phases are the present ones
   double rounding();
   double drawn();
 
   const System& system_;
+  std::shared_ptr<const std::vector<Phase>> phases_;
   const bool is_conserved_;            // whether the system computes its energy and keeps it
   int until_look_ = 1;                 // steps
   double steps_ = 1;                   // up to that look

@@ -54,19 +54,32 @@ void check_arguments(const System& system, const State& state, double t_end,
 
 Integrator::Integrator(const Method& method, const System& system, const Options& options)
     : method_(method), system_(system) {
-  if (applies_to(method, system)) add_parts(system, 0, options);
+  if (applies_to(method, system)) add_parts(system, 0, 0, options);
 }
 
-void Integrator::add_parts(const System& system, Index first, const Options& options) {
+void Integrator::add_parts(const System& system, Index first, Index first_phase,
+                           const Options& options) {
   if (system.size() == 0) return;
   if (system.blocks().empty()) {
-    parts_.push_back({first, std::make_unique<SystemRun>(method_, system, options)});
+    parts_.push_back({first, first_phase, std::make_unique<SystemRun>(method_, system, options)});
     return;
   }
   for (const auto& block : system.blocks()) {
-    add_parts(*block, first, options);
+    add_parts(*block, first, first_phase, options);
     first += block->size();
+    if (block->switching()) first_phase += block->switching()->phase_count();
   }
+}
+
+State Integrator::state_of(const Part& part, const State& whole) const {
+  const Index n = part.run->system().size();
+  State own{whole.t, whole.q.segment(part.first, n), whole.v.segment(part.first, n)};
+  if (const Switching* switching = part.run->system().switching(); switching && whole.phases) {
+    const auto begin = whole.phases->begin() + part.first_phase;
+    own.phases =
+        std::make_shared<const std::vector<Phase>>(begin, begin + switching->phase_count());
+  }
+  return own;
 }
 
 Summary Integrator::advance(State& state, double t_end, const Observer& observer,
@@ -101,6 +114,14 @@ Summary Integrator::advance(State& state, double t_end, const Observer& observer
     summary.energy_lost = energy.lost;
     summary.energy_loss = energy.loss();
     summary.work = state.work - work_;
+    for (const Part& part : parts_) {
+      for (Break broken : part.run->breaks()) {
+        broken.number += part.first_phase;
+        summary.breaks.push_back(broken);
+      }
+      summary.phase_changes += part.run->phase_changes();
+    }
+    std::ranges::stable_sort(summary.breaks, {}, &Break::t);
   }
   if (outcome == Outcome::reached_end) return summary;
   const bool says_part = message_.empty() && has_begun_ && is_whole();
@@ -154,8 +175,7 @@ Outcome Integrator::run(State& state, double t_end, const Observer& observer,
     }
     for (Part& part : parts_) {
       if (!is_whole()) {
-        const Index n = part.run->system().size();
-        part.state = {state.t, state.q.segment(part.first, n), state.v.segment(part.first, n)};
+        part.state = state_of(part, state);
       }
       part.run->begin(is_whole() ? state : part.state);
     }
@@ -257,6 +277,20 @@ EnergyChange Integrator::energy_change(const State& state) {
   return all;
 }
 
+void Integrator::gather_phases(State& state) const {
+  state.phases.reset();
+  if (std::ranges::none_of(parts_, [](const Part& part) { return bool(part.state.phases); }))
+    return;
+  std::vector<Phase> phases(static_cast<std::size_t>(system_.switching()->phase_count()),
+                            Phase::by_length);
+  for (const Part& part : parts_) {
+    if (part.state.phases) {
+      std::ranges::copy(*part.state.phases, phases.begin() + part.first_phase);
+    }
+  }
+  state.phases = std::make_shared<const std::vector<Phase>>(std::move(phases));
+}
+
 void Integrator::gather(State& state) const {
   state.work = work_;
   for (const Part& part : parts_) {
@@ -265,6 +299,7 @@ void Integrator::gather(State& state) const {
     state.v.segment(part.first, n) = part.state.v;
     state.work += part.state.work;
   }
+  gather_phases(state);
   state.t = parts_.front().state.t;
 }
 

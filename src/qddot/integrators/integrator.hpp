@@ -25,8 +25,12 @@ struct Summary {
   // The energy [J] that was lost by the end of the run, and that part of the energy which its
   // motion can turn into speed (EnergyChange); zero if none was lost.
   double energy_lost = 0, energy_loss = 0;
-  // The work of damping and driving in the run [J]; that is no loss or gain of the method.
+  // The work of damping, driving and breaking in the run [J]; no loss or gain of the method.
   Work work{};
+  // The springs that broke, ascending in time, by the numbers of the whole system; and the number
+  // of all moments at which springs went slack, taut, or broke and steps ended.
+  std::vector<Break> breaks{};
+  std::int64_t phase_changes = 0;
 };
 
 // Observes a run: `see` is called at each of `times` [s] (ascending, after the start, at most
@@ -71,15 +75,19 @@ class Integrator {
  private:
   // A block, or the whole of a system without blocks.
   struct Part {
-    Index first;  // of its unknowns
+    Index first;        // of its unknowns,
+    Index first_phase;  // and of its phases (Switching)
     std::unique_ptr<SystemRun> run;
     State state{}, begin{};       // now, and where the present run_to began
     double growth = 1;            // of the energy, in runs that were undone
     std::exception_ptr thrown{};  // by its system or by the observer, in the present run_to
   };
 
-  // Adds the blocks of the system, and those within them; unknowns are from the first one on.
-  void add_parts(const System& system, Index first, const Options& options);
+  // Adds the blocks of the system, and those within them; unknowns and phases are from the first
+  // ones on.
+  void add_parts(const System& system, Index first, Index first_phase, const Options& options);
+  // The part's own state.
+  State state_of(const Part& part, const State& whole) const;
   bool is_whole() const { return parts_.size() == 1; }
   Outcome run(State& state, double t_end, const Observer& observer, std::stop_token stop);
   // The corners of forces in time, between these, that the method's order sees.
@@ -91,6 +99,7 @@ class Integrator {
   Outcome run_part(Part& part, double t_end);
   // Collects the states of all parts.
   void gather(State& state) const;
+  void gather_phases(State& state) const;
   EnergyChange energy_change(const State& state);
 
   const Method& method_;

@@ -59,9 +59,12 @@ constexpr OutcomeWords outcomes[] = {
     {"not_autonomous",
      "the forces depend on time, and this method is for forces that stay the same: take one for "
      "f(t, q), such as rk4"},
+    {"chatters",
+     "springs go slack, taut or break again and again while the time stands still: give them "
+     "dashpots, or take verlet or an implicit method of order 2, which step over it"},
     {"unknown", ""}};  // any other number
 constexpr std::size_t named_outcomes = std::size(outcomes) - 1;
-static_assert(named_outcomes == static_cast<std::size_t>(Outcome::not_autonomous) + 1);
+static_assert(named_outcomes == static_cast<std::size_t>(Outcome::chatters) + 1);
 
 const OutcomeWords& words_of(Outcome outcome) {
   return outcomes[std::min(static_cast<std::size_t>(outcome), named_outcomes)];

@@ -26,6 +26,7 @@ enum class Outcome {
   not_conservative,      // a method for forces of positions alone, and a system whose f sees v
   refuses_damping,       // a method that would lose its order with the system's Damping
   not_autonomous,        // a method for forces that stay the same, and a system whose f sees t
+  chatters,              // springs change their phases without end (Switching)
 };
 
 std::string_view name(Outcome outcome);    // the enumerator's

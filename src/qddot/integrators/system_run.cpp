@@ -34,6 +34,7 @@ SystemRun::SystemRun(const Method& method, const System& system, const Options& 
       system_(system, options.timed),
       validity_(system.validity()),
       growth_(system),
+      changes_(system, method.order, method.knob == Knob::rtol ? options.rtol : 0),
       stepper_(method.make(*this)) {}
 
 SystemRun::~SystemRun() = default;
@@ -42,6 +43,7 @@ void SystemRun::clear(double t_end, std::stop_token stop,
                       std::function<void(const State&)> shown_steps) {
   system_.counts = {};
   system_.seconds = {};
+  changes_.clear();
   t_end_ = t_end;
   system_.stay_within(std::numeric_limits<double>::quiet_NaN());
   stop_ = std::move(stop);
@@ -52,7 +54,11 @@ void SystemRun::clear(double t_end, std::stop_token stop,
 void SystemRun::begin(const State& state) {
   message_.clear();
   reached_ = state.t;
+  changes_.begin(state);
+  system_.stay_in(changes_.phases());
+  growth_.stay_in(changes_.broken());
   growth_.start(state);
+  piece_end_ = t_end_;
   if (system().has_massless() && system().has_stiffness() &&
       !has_massless_dashpots(system(), state.q)) {
     balance_ = std::make_unique<MasslessBalance>(
@@ -68,14 +74,21 @@ void SystemRun::begin_anew(const State& state, double t_end) {
 }
 
 void SystemRun::stay_before(double t, double t_end) {
-  t_end_ = t_end;
+  t_end_ = piece_end_ = t_end;
   system_.stay_within(t + (t_end - t) / 2);
 }
 
 Outcome SystemRun::run_to(State& state, double t_stop) {
   if (must_stop()) return Outcome::over_budget;
   try {
-    const Outcome outcome = take_steps(t_stop);
+    if (changes_.are_possible()) {
+      const Outcome outcome = take_steps(t_stop, state);
+      if (outcome != Outcome::reached_end) stepper_->show_last(state);
+      state.phases = changes_.broken();
+      stepper_->collect_counts();
+      return outcome;
+    }
+    const Outcome outcome = take_smooth_steps(t_stop);
     const Outcome end = outcome == Outcome::reached_end ? stepper_->show(t_stop, state) : outcome;
     if (outcome != Outcome::reached_end) stepper_->show_last(state);
     stepper_->collect_counts();
@@ -87,7 +100,64 @@ Outcome SystemRun::run_to(State& state, double t_stop) {
   }
 }
 
-Outcome SystemRun::take_steps(double t_stop) {
+Outcome SystemRun::take_steps(double t_stop, State& state) {
+  for (;;) {
+    const bool lands = changes_.is_looking() && changes_.moment() <= t_stop;
+    const double t_next = lands ? changes_.moment() : t_stop;
+    Outcome outcome = take_smooth_steps(t_next);
+    if (outcome == Outcome::reached_end) {
+      outcome = stepper_->show(t_next, state);
+      // The step from there on decides, which is the same whatever is shown.
+      if (outcome == Outcome::chatters) {
+        outcome = stepper_->step(t_next);
+        if (outcome == Outcome::reached_end) continue;
+      }
+    }
+    if (outcome == Outcome::chatters) {  // a step that passes the end of a phase
+      changes_.aim();
+      state = changes_.before();
+      if (changes_.moment() > state.t) {
+        go_on(state);
+      } else if (const Outcome landed = land(state); landed != Outcome::reached_end) {
+        return landed;
+      }
+      continue;
+    }
+    if (outcome != Outcome::reached_end || !lands) return outcome;
+    if (const Outcome landed = land(state); landed != Outcome::reached_end) return landed;
+  }
+}
+
+Outcome SystemRun::land(State& state) {
+  stepper_->collect_counts();
+  const auto landing = changes_.land(state);
+  if (landing == SpringChanges::Landing::endless) return Outcome::chatters;
+  if (landing == SpringChanges::Landing::beyond) {
+    state = changes_.before();
+  } else if (shows_steps_) {
+    show_step(state);
+  }
+  growth_.stay_in(changes_.broken());
+  go_on(state);
+  return Outcome::reached_end;
+}
+
+void SystemRun::show_step(const State& state) {
+  if (!changes_.broken()) return shown_steps_(state);
+  State told = state;
+  told.phases = changes_.broken();
+  shown_steps_(told);
+}
+
+void SystemRun::go_on(const State& state) {
+  const double end = piece_end_;
+  stay_before(state.t, changes_.is_looking() ? changes_.moment() : end);
+  piece_end_ = end;
+  reached_ = state.t;
+  stepper_->start(state);
+}
+
+Outcome SystemRun::take_smooth_steps(double t_stop) {
   while (!stepper_->has_passed(t_stop)) {
     const Outcome outcome = must_stop() ? Outcome::over_budget : stepper_->step(t_stop);
     // A step that fails beyond t_stop fails later.
@@ -129,6 +199,8 @@ Outcome SystemRun::check_step(const State& from, const State& to, double squared
       return Outcome::went_slack;
     }
   }
+  if (changes_.are_possible() && to.t > reached() && changes_.passes_end(from, to))
+    return Outcome::chatters;
   const auto force_at = [&](const At& at, Vec& f) { system_.force(at, f); };
   const auto stiffness_at = [&](const At& at, SymmetricMatrix& k) { system_.stiffness(at, k); };
   if (balance_ && !balance_->holds(from, to, force_at, stiffness_at)) {

@@ -3,14 +3,17 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "qddot/algebra/solver.hpp"
 #include "qddot/integrators/counted_system.hpp"
 #include "qddot/integrators/energy_growth.hpp"
 #include "qddot/integrators/options.hpp"
 #include "qddot/integrators/outcome.hpp"
+#include "qddot/integrators/spring_changes.hpp"
 #include "qddot/integrators/stepper.hpp"
 
 namespace qddot {
@@ -64,12 +67,18 @@ class SystemRun {
     return stop_.stop_requested() ||
            (options_.most_forces > 0 && system_.counts.force_evaluations >= options_.most_forces);
   }
+  // The breakings of the run so far, and the number of all changes of springs' phases that steps
+  // ended on.
+  const std::vector<Break>& breaks() const { return changes_.breaks(); }
+  std::int64_t phase_changes() const { return changes_.count(); }
+
   // Whether the step from `from` to `to` can be accepted: reached_end, or the reason why not
-  // (not_finite, diverged, went_slack). The second form is for a known |v|^2 of `to`, and reads no
-  // velocities unless checks_velocities().
+  // (not_finite, diverged, went_slack; or chatters, where a spring's phase ends in the step and
+  // this run has still to find the moment). The second form is for a known |v|^2 of `to`, and reads
+  // no velocities unless checks_velocities().
   Outcome check_step(const State& from, const State& to);
   Outcome check_step(const State& from, const State& to, double squared_speed);
-  bool checks_velocities() const { return validity_; }
+  bool checks_velocities() const { return validity_ || changes_.are_possible(); }
   // The outcome of a run that ends because its matrix there is not positive definite: went_slack if
   // springs do not hold a massless node there, else indefinite_matrix.
   Outcome indefinite_at(const At& at);
@@ -85,13 +94,23 @@ class SystemRun {
   // Call with each state that is accepted.
   void note(const State& state) {
     if (growth_.is_due()) growth_.look(state, work());
-    if (shows_steps_) shown_steps_(state);
+    // A try that looks for the end of a phase may be undone.
+    if (shows_steps_ && !changes_.is_looking()) show_step(state);
     reached_.store(state.t, std::memory_order_relaxed);
   }
 
  private:
-  // Takes all steps until t_stop is passed.
-  Outcome take_steps(double t_stop);
+  // Calls shown_steps_ with the state and the phases that it has.
+  void show_step(const State& state);
+  // Takes all steps until t_stop is passed. They end on changes of springs' phases, where the
+  // method begins anew. `state`: scratch, of the system's size.
+  Outcome take_steps(double t_stop, State& state);
+  // Takes steps in the present phases.
+  Outcome take_smooth_steps(double t_stop);
+  // Changes phases at `state` if they end there, and continues from there; else comes closer.
+  Outcome land(State& state);
+  // Begins anew at `state`, up to the next change that is known.
+  void go_on(const State& state);
   // The work of the run so far, in forces.
   double work() const;
 
@@ -108,6 +127,8 @@ class SystemRun {
   std::unique_ptr<MasslessBalance> balance_;  // only if there are massless nodes
   std::atomic<double> reached_ = 0;           // [s]
   double slack_at_ = 0;                       // [s], time of the outcome went_slack
+  SpringChanges changes_;
+  double piece_end_ = 0;  // [s], the last end of steps but for changes
   std::unique_ptr<Stepper> stepper_;
 };
 

@@ -18,14 +18,21 @@ Vec all_masses(const std::vector<std::unique_ptr<System>>& blocks) {
   return mass;
 }
 
+Index phases_of(const System& block) {
+  return block.switching() ? block.switching()->phase_count() : 0;
+}
+
 // Calls action(block, its segment of `at`, the segment's start) for each block.
 template <class Action>
 void for_each(const std::vector<std::unique_ptr<System>>& blocks, const At& at,
               const Action& action) {
   Index first = 0;
+  At own = at;
   for (const auto& block : blocks) {
-    action(*block, at.segment(first, block->size()), first);
+    At of_block = own.segment(first, block->size());
+    action(*block, of_block, first);
     first += block->size();
+    if (own.phases) own.phases += phases_of(*block);
   }
 }
 
@@ -225,11 +232,11 @@ Work BlockDiagonalSystem::driving_power(const At& at) const {
   return power;
 }
 
-double BlockDiagonalSystem::potential_change(double from, double to, const VecView& q) const {
+double BlockDiagonalSystem::potential_change(double from, double to, const At& at) const {
   double change = 0;
-  for_each(blocks_, q, [&](const System& block, const At& own, Index) {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
     if (const Driving* driving = block.driving())
-      change += driving->potential_change(from, to, own.q);
+      change += driving->potential_change(from, to, own);
   });
   return change;
 }
@@ -251,6 +258,101 @@ std::vector<Corner> BlockDiagonalSystem::corners() const {
   }
   std::ranges::sort(all, {}, &Corner::t);
   return all;
+}
+
+const Switching* BlockDiagonalSystem::switching() const {
+  return any_has(blocks_, &System::switching) ? this : nullptr;
+}
+
+Index BlockDiagonalSystem::phase_count() const {
+  Index count = 0;
+  for (const auto& block : blocks_) count += phases_of(*block);
+  return count;
+}
+
+std::optional<int> BlockDiagonalSystem::order_of_slack() const {
+  std::optional<int> order;
+  for (const auto& block : blocks_) {
+    const std::optional<int> own =
+        block->switching() ? block->switching()->order_of_slack() : std::nullopt;
+    if (own) order = std::min(order.value_or(*own), *own);
+  }
+  return order;
+}
+
+void BlockDiagonalSystem::set_phases(const At& at, bool finds_slack,
+                                     std::span<Phase> phases) const {
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
+    if (!block.switching()) return;
+    block.switching()->set_phases(own, finds_slack, phases.first(phases_of(block)));
+    phases = phases.subspan(phases_of(block));
+  });
+}
+
+std::optional<Switching::Change> BlockDiagonalSystem::first_change(const State& from,
+                                                                   const State& to,
+                                                                   std::span<const Phase> phases,
+                                                                   const Recent& recent) const {
+  std::optional<Change> first;
+  int before = 0;
+  for_each(blocks_, from, [&](const System& block, const At& own, Index at) {
+    if (!block.switching()) return;
+    const Index n = block.size(), count = phases_of(block);
+    auto change = block.switching()->first_change(
+        {own.t, own.q, own.v}, {to.t, to.q.segment(at, n), to.v.segment(at, n)},
+        phases.subspan(before, count),
+        {recent.is_recent.subspan(before, count), recent.allowance, recent.but - before});
+    if (change && (!first || change->t < first->t)) {
+      change->number += before;
+      first = change;
+    }
+    before += static_cast<int>(count);
+  });
+  return first;
+}
+
+template <class Action>
+auto BlockDiagonalSystem::in_block(const At& at, int number, const Action& action) const {
+  Index first = 0;
+  for (const auto& block : blocks_) {
+    const auto count = static_cast<int>(phases_of(*block));
+    if (number < count)
+      return action(*block->switching(), at.segment(first, block->size()), number);
+    number -= count;
+    first += block->size();
+  }
+  throw std::logic_error("no spring of the system has that number");
+}
+
+Switching::Margin BlockDiagonalSystem::margin(const At& at, int number, Phase to) const {
+  return in_block(at, number, [&](const Switching& block, const At& own, int spring) {
+    return block.margin(own, spring, to);
+  });
+}
+
+void BlockDiagonalSystem::add_due_changes(const At& at, std::span<const Phase> phases,
+                                          std::vector<Change>& due) const {
+  int before = 0;
+  for_each(blocks_, at, [&](const System& block, const At& own, Index) {
+    if (!block.switching()) return;
+    const Index count = phases_of(block);
+    const std::size_t known = due.size();
+    block.switching()->add_due_changes(own, phases.subspan(before, count), due);
+    for (std::size_t k = known; k < due.size(); ++k) due[k].number += before;
+    before += static_cast<int>(count);
+  });
+}
+
+double BlockDiagonalSystem::energy_of(const At& at, int number) const {
+  return in_block(at, number, [](const Switching& block, const At& own, int spring) {
+    return block.energy_of(own, spring);
+  });
+}
+
+double BlockDiagonalSystem::strain_of(const At& at, int number) const {
+  return in_block(at, number, [](const Switching& block, const At& own, int spring) {
+    return block.strain_of(own, spring);
+  });
 }
 
 bool BlockDiagonalSystem::has_potential() const {

@@ -12,8 +12,8 @@ namespace qddot {
 // allocate.
 //
 // It has K if all blocks have K, and offers a capability if all blocks offer it. Kinks, Validity
-// and PiecewiseLinear state exceptions; these it offers if any block does. It offers Damping if
-// that is all that makes forces of blocks depend on velocities.
+// and PiecewiseLinear state exceptions; these and Switching it offers if any block does. It offers
+// Damping if that is all that makes forces of blocks depend on velocities.
 class BlockDiagonalSystem final : public CapableSystem {
  public:
   // `blocks`: in the order of their unknowns.
@@ -62,9 +62,21 @@ class BlockDiagonalSystem final : public CapableSystem {
   std::optional<double> damping_time() const override;
   const Driving* driving() const override;
   Work driving_power(const At& at) const override;
-  double potential_change(double from, double to, const VecView& q) const override;
+  double potential_change(double from, double to, const At& at) const override;
   void force_rate(const At& at, MutableVec rate) const override;
   std::vector<Corner> corners() const override;
+  const Switching* switching() const override;
+  Index phase_count() const override;
+  std::optional<int> order_of_slack() const override;
+  void set_phases(const At& at, bool finds_slack, std::span<Phase> phases) const override;
+  std::optional<Change> first_change(const State& from, const State& to,
+                                     std::span<const Phase> phases,
+                                     const Recent& recent) const override;
+  Margin margin(const At& at, int number, Phase to) const override;
+  void add_due_changes(const At& at, std::span<const Phase> phases,
+                       std::vector<Change>& due) const override;
+  double energy_of(const At& at, int number) const override;
+  double strain_of(const At& at, int number) const override;
 
  private:
   // The blocks' columns follow one another in `k`, and so do their entries: evaluate(block, its
@@ -73,6 +85,9 @@ class BlockDiagonalSystem final : public CapableSystem {
   void assemble(const At& at, SymmetricMatrix& k, const Evaluate& evaluate) const;
 
   SymmetricMatrix joined_patterns() const;
+  // Calls action(the block that spring `number` is in, its segment, its number there).
+  template <class Action>
+  auto in_block(const At& at, int number, const Action& action) const;
 
   std::vector<std::unique_ptr<System>> blocks_;
   // Made when somebody first asks for it, by any thread.

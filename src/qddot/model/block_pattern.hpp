@@ -18,19 +18,26 @@ namespace qddot {
 template <int D>
 class BlockPattern {
  public:
-  // K has a block for each node, and for the two nodes of each link and image link.
+  // K has a block for each node, and for the two nodes of each spring.
   BlockPattern(const Network& network, const Layout<D>& layout) : layout_(layout) {
     const auto links = static_cast<int>(network.links.size());
+    const int images_end = links + static_cast<int>(network.image_links.size());
+    const auto sorted = [](int i, int j) { return std::array{std::min(i, j), std::max(i, j)}; };
     const auto pair = [&](int k) {
       if (k < links) {
         const auto& link = network.links[static_cast<std::size_t>(k)];
-        return std::array{std::min(link.i, link.j), std::max(link.i, link.j)};
+        return sorted(link.i, link.j);
       }
-      const auto& link = network.image_links[static_cast<std::size_t>(k - links)];
-      return std::array{std::min(link.i, link.j), std::max(link.i, link.j)};
+      if (k < images_end) {
+        const auto& link = network.image_links[static_cast<std::size_t>(k - links)];
+        return sorted(link.i, link.j);
+      }
+      const auto& spring = network.general[static_cast<std::size_t>(k - images_end)];
+      return sorted(spring.i, spring.j < 0 ? spring.i : spring.j);
     };
     const auto nodes = static_cast<int>(layout_.nodes());
-    const Grouped by_low(nodes, links + static_cast<int>(network.image_links.size()), [&](int k) {
+    const int pairs = images_end + static_cast<int>(network.general.size());
+    const Grouped by_low(nodes, pairs, [&](int k) {
       const auto [low, high] = pair(k);
       return low == high ? Grouped::none : low;
     });

@@ -96,6 +96,7 @@ struct BackwardRate {
   ConstVec q0, q1, q2;
   double a0, a1, a2;
   double t0 = 0, t1 = 0, t2 = 0;
+  const Phase* phases = nullptr;  // see At
 };
 
 // Damping that is linear in the velocities: f(q, v) = -dV/dq - C(q) v. Rayleigh's dissipation
@@ -161,8 +162,8 @@ class Driving {
   // of what dashpots take of supports. Without velocities, the latter is left out. Damping books
   // -v'f_d; the sum of both is what damping takes.
   virtual Work driving_power(const At& at) const = 0;
-  // Adds the change of V [J] from one time to another at constant q (n).
-  virtual double potential_change(double from, double to, const VecView& q) const = 0;
+  // The change of V [J] from one time to another at constant q and phases, those of `at`.
+  virtual double potential_change(double from, double to, const At& at) const = 0;
   // Writes df/dt [N/s] at constant q, for conservative forces and air, into `rate` (n).
   virtual void force_rate(const At& at, MutableVec rate) const = 0;
   // The corners of f(t) at constant q and v, ascending in time.
@@ -170,6 +171,52 @@ class Driving {
   // The forces of a system of constant K from the time t to the next corner; nothing if they are no
   // such sums.
   virtual std::optional<Forcing> forcing(double /*t*/) const { return {}; }
+};
+
+// Springs that go slack or break: f and V are smooth as long as all springs stay in their phases,
+// and a spring's length decides when its phase ends. Each such spring has a number, 0, 1, ...; the
+// phases of all are in At::phases and State::phases by these numbers.
+class Switching {
+ public:
+  virtual ~Switching() = default;
+  // The end of a spring's phase, and the next one.
+  struct Change {
+    double t = 0;  // [s]
+    int number = 0;
+    Phase to = Phase::by_length;
+  };
+  // The springs that changed their phases last. The places after that have the error `allowance` of
+  // an adaptive method [m], so that one is not believed to change again up to that. The spring
+  // `but` changes at the end of the step and is left out.
+  struct Recent {
+    std::span<const char> is_recent;
+    double allowance = 0;
+    int but = -1;
+  };
+  // How far a spring's length is from the end of its phase [m], its rate [m/s], and its rounding.
+  struct Margin {
+    double length, rate, rounding;
+  };
+  virtual Index phase_count() const = 0;
+  // The number k of the derivative of f that jumps where a cable goes slack or taut: 0 if it has a
+  // dashpot, else 1; nothing if no spring does.
+  virtual std::optional<int> order_of_slack() const = 0;
+  // Sets the phases at `at`, which has velocities, of all springs that are not broken in `phases`:
+  // by_length, or that of each cable if `finds_slack`.
+  virtual void set_phases(const At& at, bool finds_slack, std::span<Phase> phases) const = 0;
+  // The first change in the step between two states from these phases on; nothing if there is none.
+  // In the step each spring follows the cubic that has its ends' places and velocities.
+  virtual std::optional<Change> first_change(const State& from, const State& to,
+                                             std::span<const Phase> phases,
+                                             const Recent& recent) const = 0;
+  // The margin from the change of spring `number` to a phase; at `at`, which has velocities.
+  virtual Margin margin(const At& at, int number, Phase to) const = 0;
+  // Appends the changes that are due at `at` for spring after spring, within rounding.
+  virtual void add_due_changes(const At& at, std::span<const Phase> phases,
+                               std::vector<Change>& due) const = 0;
+  // The energy V [J] and the strain (l - l0)/l0 of a spring that is not broken.
+  virtual double energy_of(const At& at, int number) const = 0;
+  virtual double strain_of(const At& at, int number) const = 0;
 };
 
 // A system that implements all capabilities above. Its accessors say which of them it has.
@@ -181,7 +228,8 @@ class CapableSystem : public System,
                       public Validity,
                       public Kinks,
                       public Damping,
-                      public Driving {
+                      public Driving,
+                      public Switching {
  public:
   using System::System;
 };

@@ -8,14 +8,15 @@
 
 namespace qddot {
 
-// The ends and laws of a network's links in little memory: 12 bytes a link in place of 48, and each
+// The ends and laws of a network's links in little memory: 12 bytes a link in place of 80, and each
 // law once that was seen shortly before.
 class CompactLinks {
  public:
   CompactLinks() = default;
   explicit CompactLinks(const std::vector<Network::Link>& links) {
     ends_.reserve(links.size());
-    for (const auto& link : links) ends_.push_back({link.i, link.j, laws_.number(link.law)});
+    for (const auto& link : links)
+      ends_.push_back({link.i, link.j, laws_.number(link.law.plain())});
   }
 
   // Calls see(i, j, law) for each link.
@@ -28,7 +29,9 @@ class CompactLinks {
   std::vector<Network::Link> links() const {
     std::vector<Network::Link> links;
     links.reserve(ends_.size());
-    for_each([&](int i, int j, const SpringLaw& law) { links.push_back({i, j, law}); });
+    for_each([&](int i, int j, const PlainLaw& law) {
+      links.push_back({i, j, {law.stiffness, law.rest_length, law.quartic, law.damping}});
+    });
     return links;
   }
 
@@ -38,7 +41,7 @@ class CompactLinks {
   };
 
   std::vector<Ends> ends_;
-  RepeatedValues<SpringLaw> laws_;
+  RepeatedValues<PlainLaw> laws_;
 };
 
 }  // namespace qddot

@@ -14,6 +14,7 @@ ConstrainedSystem::ConstrainedSystem(std::shared_ptr<const System> system,
       kinks_(system_->kinks()),
       damping_(system_->damping()),
       driving_(system_->driving()),
+      switching_(system_->switching()),
       is_held_(std::move(is_held)) {
   for (Index i = 0; i < size(); ++i) {
     if (is_held_[i]) unknowns_.push_back(i);

@@ -46,6 +46,7 @@ class ConstrainedSystem final : public CapableSystem {
   const Split* split() const override { return split_ ? &*split_ : nullptr; }
   const Damping* damping() const override { return damping_ ? this : nullptr; }
   const Driving* driving() const override { return driving_ ? this : nullptr; }
+  const Switching* switching() const override { return switching_ ? this : nullptr; }
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override;
   void weighted_stiffness(const At& at, double compression_weight,
@@ -76,11 +77,35 @@ class ConstrainedSystem final : public CapableSystem {
   std::optional<double> damping_time() const override { return damping_->damping_time(); }
 
   Work driving_power(const At& at) const override { return driving_->driving_power(at); }
-  double potential_change(double from, double to, const VecView& q) const override {
-    return driving_->potential_change(from, to, q);
+  double potential_change(double from, double to, const At& at) const override {
+    return driving_->potential_change(from, to, at);
   }
   void force_rate(const At& at, MutableVec rate) const override;
   std::vector<Corner> corners() const override { return driving_->corners(); }
+
+  Index phase_count() const override { return switching_->phase_count(); }
+  std::optional<int> order_of_slack() const override { return switching_->order_of_slack(); }
+  void set_phases(const At& at, bool finds_slack, std::span<Phase> phases) const override {
+    switching_->set_phases(at, finds_slack, phases);
+  }
+  std::optional<Change> first_change(const State& from, const State& to,
+                                     std::span<const Phase> phases,
+                                     const Recent& recent) const override {
+    return switching_->first_change(from, to, phases, recent);
+  }
+  Margin margin(const At& at, int number, Phase to) const override {
+    return switching_->margin(at, number, to);
+  }
+  void add_due_changes(const At& at, std::span<const Phase> phases,
+                       std::vector<Change>& due) const override {
+    switching_->add_due_changes(at, phases, due);
+  }
+  double energy_of(const At& at, int number) const override {
+    return switching_->energy_of(at, number);
+  }
+  double strain_of(const At& at, int number) const override {
+    return switching_->strain_of(at, number);
+  }
 
  private:
   void clear_held(SymmetricMatrix& k) const;
@@ -95,6 +120,7 @@ class ConstrainedSystem final : public CapableSystem {
   const Kinks* kinks_;
   const Damping* damping_;
   const Driving* driving_;
+  const Switching* switching_;
   std::vector<bool> is_held_;
   std::vector<Index> unknowns_;  // the held ones
   std::optional<Split> split_;   // of the system, held likewise

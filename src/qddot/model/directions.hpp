@@ -31,6 +31,7 @@ std::vector<signed char> directions(const Network& network, const Layout<D>& lay
   for (const auto& anchor : network.anchors) {
     take(anchor, layout.is_full(anchor.i) ? inner_anchors : edge_anchors);
   }
+  all = all && network.general.empty();
   if (!any) return {};
   if (!all) throw std::invalid_argument("some springs have a direction and others do not");
   for (const auto* more : {&inner_anchors, &edge_links, &edge_anchors}) {

@@ -27,8 +27,13 @@ class DrivenNetwork {
     }
     for (const auto& anchor : network.anchors) {
       if (anchor.curve >= 0) {
-        anchors_.push_back({anchor.i, anchor.curve, anchor.point.head<D>(), anchor.law});
+        anchors_.push_back({anchor.i, anchor.curve, anchor.point.head<D>(), anchor.law, -1});
       }
+    }
+    for (const auto& spring : network.general) {
+      if (spring.curve < 0) continue;
+      anchors_.push_back(
+          {spring.i, spring.curve, spring.point.head<D>(), spring.law, spring.number});
     }
   }
 
@@ -64,25 +69,30 @@ class DrivenNetwork {
     const std::vector<Point> s = values(at), s_rate = rates(at);
     Work power{.driven = load_energy(s_rate, at.q)};
     for (const Anchor& anchor : anchors_) {
+      if (!acts(anchor, at.phases)) continue;
       const Point d = anchor.point + s[anchor.curve] - layout_.at(at.q, anchor.i);
       const Point& w = s_rate[anchor.curve];
       // The spring pulls its node by tau n, and the support by -tau n.
-      power.driven += spring_force(anchor.law, d).dot(w);
-      if (anchor.law.damping == 0 || at.v.size() == 0) continue;
+      const SpringLaw law = law_of(anchor, at.phases);
+      power.driven += spring_force(law, d).dot(w);
+      if (law.damping == 0 || at.v.size() == 0) continue;
       const Point apart = w - layout_.at(at.v, anchor.i);
-      const double given = dashpot_force(anchor.law, d, apart).dot(w);
+      const double given = dashpot_force(law, d, apart).dot(w);
       power += Work{given, given};
     }
     return power;
   }
 
-  double potential_change(double from, double to, const VecView& q) const {
+  double potential_change(double from, double to, const At& at) const {
+    const VecView& q = at.q;
     const std::vector<Point> before = values(Time(from)), after = values(Time(to));
     double change = load_energy(after, q) - load_energy(before, q);
     for (const Anchor& anchor : anchors_) {
+      if (!acts(anchor, at.phases)) continue;
       const Point rest = anchor.point - layout_.at(q, anchor.i);
-      change += spring_energy(anchor.law, Point(rest + after[anchor.curve])) -
-                spring_energy(anchor.law, Point(rest + before[anchor.curve]));
+      const SpringLaw law = law_of(anchor, at.phases);
+      change += spring_energy(law, Point(rest + after[anchor.curve])) -
+                spring_energy(law, Point(rest + before[anchor.curve]));
     }
     return change;
   }
@@ -92,8 +102,10 @@ class DrivenNetwork {
     rate.setZero();
     add_loads(s_rate, rate);
     for (const Anchor& anchor : anchors_) {
+      if (!acts(anchor, at.phases)) continue;
       const Point d = anchor.point + s[anchor.curve] - layout_.at(at.q, anchor.i);
-      layout_.add(spring_stiffness(anchor.law, d) * s_rate[anchor.curve], anchor.i, rate);
+      layout_.add(spring_stiffness(law_of(anchor, at.phases), d) * s_rate[anchor.curve], anchor.i,
+                  rate);
     }
   }
 
@@ -166,7 +178,21 @@ class DrivenNetwork {
     int i, curve;
     Point point;
     SpringLaw law;
+    int number;  // of its phase, or -1
   };
+
+  // Whether the spring is in the network.
+  static bool acts(const Anchor& anchor, const Phase* phases) {
+    if (anchor.number < 0 || !phases) return true;
+    const Phase phase = phases[anchor.number];
+    return phase != Phase::slack && phase != Phase::broken;
+  }
+  static SpringLaw law_of(const Anchor& anchor, const Phase* phases) {
+    SpringLaw law = anchor.law;
+    if (anchor.number >= 0 && phases && phases[anchor.number] == Phase::taut)
+      law.pulls_only = false;
+    return law;
+  }
 
   using Function = Eigen::Vector3d (TimeCurve::*)(double, double) const;
   std::vector<Point> of_all(Function function, const Time& time) const {

@@ -3,32 +3,11 @@
 namespace qddot {
 namespace {
 
-constexpr double narrowest = 1e-6;
-
-// The same on [at, at + width], where c are the coefficients.
-std::optional<double> first_below(const SquaredLength& c, double bound, double at, double width) {
-  if (c.front() < bound) return at;
-  if (std::ranges::min(c) >= bound) return {};
-  if (width < narrowest) return c.back() < bound ? std::optional(at + width) : std::nullopt;
-  // de Casteljau: the coefficients on the two halves.
-  SquaredLength left, right = c;
-  for (std::size_t level = 0; level < c.size(); ++level) {
-    left[level] = right.front();
-    for (std::size_t i = 0; i + level + 1 < c.size(); ++i) right[i] = (right[i] + right[i + 1]) / 2;
-  }
-  if (const auto s = first_below(left, bound, at, width / 2)) return s;
-  return first_below(right, bound, at + width / 2, width / 2);
-}
-
 // The samples of one turn of a vibration. Between two of them it is lower than at both by at most
 // a part of 1e-3 of its amplitude.
 constexpr int samples_a_turn = 72;
 
 }  // namespace
-
-std::optional<double> first_below(const SquaredLength& c, double bound) {
-  return first_below(c, bound, 0, 1);
-}
 
 Swing::Swing(const LengthMotion& from, const LengthMotion& to, double w, double h)
     : turn_(h * w),

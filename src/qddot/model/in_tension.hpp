@@ -1,24 +1,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "qddot/model/layout.hpp"
 #include "qddot/model/spring.hpp"
+#include "qddot/model/squared_length.hpp"
 
 namespace qddot {
-
-// The squared length of a spring [m^2] during a step: a polynomial of degree 6 in s = 0 ... 1, by
-// its Bernstein coefficients c. If all c are above a bound, so is the polynomial. c_0 and c_6 are
-// its values at the ends.
-using SquaredLength = std::array<double, 7>;
-
-// The first s in [0, 1] at which the polynomial is below `bound`, to a millionth; nothing if there
-// is none.
-std::optional<double> first_below(const SquaredLength& c, double bound);
 
 // The part of a rest length by which rounding may make a spring shorter that is drawn at it.
 constexpr double forgiven = 1e-12;
@@ -188,14 +179,7 @@ class InTension {
       b = a + third * rate(spring, from);
       c = d - third * rate(spring, to);
     }
-    // The cubic's Bernstein coefficients, and their products.
-    return {a.dot(a),
-            a.dot(b),
-            (2 * a.dot(c) + 3 * b.dot(b)) / 5,
-            (a.dot(d) + 9 * b.dot(c)) / 10,
-            (2 * b.dot(d) + 3 * c.dot(c)) / 5,
-            c.dot(d),
-            d.dot(d)};
+    return squared_length<D>(a, b, c, d);
   }
   static double per_mass(const Layout<D>& layout, const Vec& mass, int node) {
     return node < 0 || layout.count(node) == 0 ? 0 : 1 / mass[layout.first(node)];

@@ -20,6 +20,7 @@
 #include "qddot/model/split_network.hpp"
 #include "qddot/model/spring_lists.hpp"
 #include "qddot/model/stiffness_blocks.hpp"
+#include "qddot/model/switches.hpp"
 
 namespace qddot {
 namespace {
@@ -51,28 +52,34 @@ class MassSpring final : public CapableSystem {
       for_each_anchor([&](const Network::Anchor& anchor) {
         v += spring_energy(anchor.law, between({q, curves}, anchor)) / 2;
       });
+      if (beside_) {
+        beside_->for_each_general(at.phases, [&](const auto& spring) {
+          v += spring_energy(spring.law, beside_->between({q, curves}, spring));
+        });
+      }
       return v;
     }
-    springs_->for_each([&](const auto& spring) {
+    springs_->for_each(at.phases, [&](const auto& spring) {
       v += spring_energy(spring.law, springs_->between({q, curves}, spring));
     });
     return v;
   }
 
   void force(const At& at, MutableVec f) const override {
-    if (by_node_ && has_dashpots_ && at.v.size() > 0) {
+    if (by_node_ && has_dashpots_ && !beside_ && at.v.size() > 0) {
       Vec friction(size());
       damped_force(at, f, friction, nullptr);
       return;
     }
     if (by_node_) {
       by_node_->sum_forces(at, f);
+      if (beside_) add_general_forces(at, f);
     } else if (driven_.is_driven()) {
       const Curves curves = driven_.values(at);
-      sum_spring_by_spring({at.q, curves}, f);
+      sum_spring_by_spring({at.q, curves, at.phases}, f);
       driven_.add_loads(at, f);
     } else {
-      sum_spring_by_spring({at.q, none_}, f);
+      sum_spring_by_spring({at.q, none_, at.phases}, f);
     }
     if (is_damped() && at.v.size() > 0) add_friction(at, f);
   }
@@ -80,7 +87,7 @@ class MassSpring final : public CapableSystem {
   std::optional<double> damped_force(const At& at, MutableVec f, MutableVec friction,
                                      BesideForce* beside) const override {
     // Air would come after the work beside.
-    if (!by_node_ || !has_dashpots_ || (beside && air_damping_ > 0)) return {};
+    if (!by_node_ || beside_ || !has_dashpots_ || (beside && air_damping_ > 0)) return {};
     const double sum = by_node_->sum_damped_forces(at, f, friction, beside);
     if (air_damping_ > 0) {
       add_air(at, f);
@@ -90,24 +97,28 @@ class MassSpring final : public CapableSystem {
   }
 
   double force_beside(const At& at, MutableVec f, BesideForce& beside) const override {
-    if (by_node_ && (!is_damped() || at.v.size() == 0)) {
+    if (by_node_ && !beside_ && (!is_damped() || at.v.size() == 0)) {
       return by_node_->sum_forces(at, f, beside);
     }
     return System::force_beside(at, f, beside);
   }
 
   void mean_force(const At& start, const At& end, MutableVec f) const override {
-    if (by_node_) return by_node_->sum_mean_forces(start, end, f);
     const Curves curves = driven_.values(start);
     const Moved a{start.q, curves}, b{end.q, curves};
+    const auto gradient = [&](const auto& spring) {
+      const SpringLists<D>& springs = by_node_ ? *beside_ : *springs_;
+      return spring_discrete_gradient(spring.law, springs.between(a, spring),
+                                      springs.between(b, spring));
+    };
+    if (by_node_) {
+      by_node_->sum_mean_forces(start, end, f);
+      if (beside_) beside_->add_general_forces(start.phases, gradient, f);
+      return;
+    }
     f = weight_;
     driven_.add_loads(start, f);
-    springs_->add_forces(
-        [&](const auto& spring) {
-          return spring_discrete_gradient(spring.law, springs_->between(a, spring),
-                                          springs_->between(b, spring));
-        },
-        f);
+    springs_->add_forces(start.phases, gradient, f);
   }
 
   void stiffness(const At& at, SymmetricMatrix& k) const override { weighted_stiffness(at, 1, k); }
@@ -115,8 +126,8 @@ class MassSpring final : public CapableSystem {
   void weighted_stiffness(const At& at, double compression_weight,
                           SymmetricMatrix& k) const override {
     const Curves curves = driven_.values(at);
-    const Moved now{at.q, curves};
-    const auto block = [compression_weight](const SpringLaw& law, const Point& d) {
+    const Moved now{at.q, curves, at.phases};
+    const auto block = [compression_weight](const auto& law, const Point& d) {
       return spring_stiffness(law, d, compression_weight);
     };
     const ForStiffness& own = for_stiffness();
@@ -127,8 +138,8 @@ class MassSpring final : public CapableSystem {
 
   void material_stiffness(const At& at, SymmetricMatrix& k) const override {
     const Curves curves = driven_.values(at);
-    const Moved now{at.q, curves};
-    const auto block = [](const SpringLaw& law, const Point& d) {
+    const Moved now{at.q, curves, at.phases};
+    const auto block = [](const auto& law, const Point& d) {
       return spring_material_stiffness(law, d);
     };
     const ForStiffness& own = for_stiffness();
@@ -151,11 +162,19 @@ class MassSpring final : public CapableSystem {
       const Point d = between({at.q, curves}, anchor);
       layout_.add(-spring_stiffness(anchor.law, d).cwiseAbs().rowwise().sum(), anchor.i, sums);
     }
+    if (beside_) {
+      beside_->for_each_general(at.phases, [&](const auto& spring) {
+        const Point d = beside_->between({at.q, curves}, spring);
+        const Point rows = spring_stiffness(spring.law, d).cwiseAbs().rowwise().sum();
+        layout_.add(spring.j < 0 ? rows : Point(2 * rows), spring.i, sums);
+        if (spring.j >= 0) layout_.add(2 * rows, spring.j, sums);
+      });
+    }
     return true;
   }
 
   bool multiply_stiffness(const At& at, const ConstVec& x, MutableVec y) const override {
-    if (!by_node_) return false;
+    if (!by_node_ || beside_) return false;
     by_node_->multiply_stiffness(at, VecView(x), y);
     return true;
   }
@@ -165,7 +184,7 @@ class MassSpring final : public CapableSystem {
   bool is_conservative() const override { return !is_damped(); }
   const Damping* damping() const override { return is_damped() ? this : nullptr; }
   void friction(const At& at, MutableVec f) const override {
-    if (by_node_ && has_dashpots_) {
+    if (by_node_ && has_dashpots_ && !beside_) {
       by_node_->sum_friction(at, f);
       if (air_damping_ > 0) add_air(at, f);
     } else {
@@ -183,6 +202,7 @@ class MassSpring final : public CapableSystem {
     double power = 0;
     f.setZero();
     springs.add_forces(
+        rate.phases,
         [&](const auto& spring) {
           const SecantDashpot dashpot = secant_dashpot(
               spring.law, springs.between({q0, curves0}, spring),
@@ -213,7 +233,7 @@ class MassSpring final : public CapableSystem {
     return true;
   }
   bool damping_is_constant() const override {
-    return !has_dashpots_ || D == 1 || !has_rest_lengths_;
+    return !has_dashpots_ || (D == 1 && switches_.empty()) || !has_rest_lengths_;
   }
   double air_damping() const override { return air_damping_; }
   bool has_dashpots() const override { return has_dashpots_; }
@@ -234,7 +254,7 @@ class MassSpring final : public CapableSystem {
     const signed char* direction = directions_.data();
     bool all = true;
     const SpringLists<D>& springs = lists();
-    springs.for_each([&](const auto& spring) {
+    springs.for_each(nullptr, [&](const auto& spring) {
       const int own = *direction++;
       all = all & (own == 0 || own * springs.between({at.q, curves}, spring)[0] > 0);
     });
@@ -246,10 +266,9 @@ class MassSpring final : public CapableSystem {
   void assemble_laplacian(SymmetricMatrix& l) const override {
     const Vec anywhere = Vec::Zero(size());
     const Curves curves = driven_.values(Time(0));
-    for_stiffness().blocks.assemble({anywhere, curves}, l,
-                                    [](const SpringLaw& law, const Point&) -> Block {
-                                      return -law.stiffness * Block::Identity();
-                                    });
+    for_stiffness().blocks.assemble(
+        {anywhere, curves, all_taut_.data()}, l,
+        [](const auto& law, const Point&) -> Block { return -law.stiffness * Block::Identity(); });
   }
 
   // A length of zero is a kink only on a line.
@@ -258,7 +277,7 @@ class MassSpring final : public CapableSystem {
     const Curves curves = driven_.values(at);
     Index i = 0;
     const SpringLists<D>& springs = lists();
-    springs.for_each([&](const auto& spring) {
+    springs.for_each(all_taut_.data(), [&](const auto& spring) {
       if (turns_over(spring.law)) lengths[i++] = springs.between({at.q, curves}, spring)[0];
     });
   }
@@ -279,11 +298,37 @@ class MassSpring final : public CapableSystem {
   bool is_autonomous() const override { return !driven_.is_driven(); }
   const Driving* driving() const override { return driven_.is_driven() ? this : nullptr; }
   Work driving_power(const At& at) const override { return driven_.power(at); }
-  double potential_change(double from, double to, const VecView& q) const override {
-    return driven_.potential_change(from, to, q);
+  double potential_change(double from, double to, const At& at) const override {
+    return driven_.potential_change(from, to, at);
   }
   void force_rate(const At& at, MutableVec rate) const override { driven_.force_rate(at, rate); }
   std::vector<Corner> corners() const override { return driven_.corners(); }
+
+  const Switching* switching() const override { return switches_.empty() ? nullptr : this; }
+  Index phase_count() const override { return switches_.count(); }
+  std::optional<int> order_of_slack() const override { return switches_.order_of_slack(); }
+  void set_phases(const At& at, bool finds_slack, std::span<Phase> phases) const override {
+    switches_.set_phases(moving_nodes(at), finds_slack, phases);
+  }
+  std::optional<Change> first_change(const State& from, const State& to,
+                                     std::span<const Phase> phases,
+                                     const Recent& recent) const override {
+    return switches_.first_change(from.t, moving_nodes(from), to.t, moving_nodes(to), phases,
+                                  recent);
+  }
+  Margin margin(const At& at, int number, Phase to) const override {
+    return switches_.margin(moving_nodes(at), number, to);
+  }
+  void add_due_changes(const At& at, std::span<const Phase> phases,
+                       std::vector<Change>& due) const override {
+    switches_.add_due_changes(at.t, moving_nodes(at), phases, due);
+  }
+  double energy_of(const At& at, int number) const override {
+    return switches_.energy(moving_nodes(at), number);
+  }
+  double strain_of(const At& at, int number) const override {
+    return switches_.strain(moving_nodes(at), number);
+  }
   std::optional<Forcing> forcing(double t) const override {
     if (!linear_ || keeps_directions()) return {};
     Vec constant = weight_;
@@ -307,6 +352,7 @@ class MassSpring final : public CapableSystem {
       : CapableSystem(masses(network, layout)),
         layout_(std::move(layout)),
         driven_(network, layout_),
+        switches_(network, layout_),
         weight_(weights(network, layout_)),
         constant_energy_(network.constant_energy),
         air_damping_(network.air_damping) {
@@ -316,11 +362,17 @@ class MassSpring final : public CapableSystem {
     note_laws(network);
     if (network.offers_split) offer_split(network, forces);
     entries_ = D * (D + 1) / 2 * layout_.nodes() +
-               D * D * (std::ssize(network.links) + std::ssize(network.image_links));
+               D * D *
+                   (std::ssize(network.links) + std::ssize(network.image_links) +
+                    std::ssize(network.general));
+    note_general(network);
     links_ = CompactLinks(network.links);
     if (forces == Forces::by_vectors ||
         (forces == Forces::whichever_is_faster && layout_.nodes() >= fewest_for_vectors)) {
       network.links = {};  // most of the memory of many nodes
+      if (!network.general.empty()) {
+        beside_.emplace(Network{.general = network.general}, layout_);
+      }
       by_node_.emplace(network, links_, layout_, weight_, driven_);
     } else {
       springs_.emplace(network, layout_);
@@ -328,6 +380,7 @@ class MassSpring final : public CapableSystem {
     network_ = {.dimension = D,
                 .anchors = std::move(network.anchors),
                 .image_links = std::move(network.image_links),
+                .general = std::move(network.general),
                 .curves = std::move(network.curves)};
   }
 
@@ -339,6 +392,13 @@ class MassSpring final : public CapableSystem {
     for (auto& spring : network.links) see(spring);
     for (auto& spring : network.image_links) see(spring);
     for (auto& spring : network.anchors) see(spring);
+    for (auto& spring : network.general) see(spring);
+  }
+
+  void note_general(const Network& network) {
+    int last = -1;
+    for (const auto& spring : network.general) last = std::max(last, spring.number);
+    all_taut_.assign(static_cast<std::size_t>(last + 1), Phase::taut);
   }
 
   void note_damping(const Network& network) {
@@ -347,7 +407,8 @@ class MassSpring final : public CapableSystem {
     for_each_spring(network, [&](const auto& spring) {
       const SpringLaw& law = spring.law;
       has_dashpots_ = has_dashpots_ || law.damping > 0;
-      if (law.stiffness == 0 && law.quartic == 0 && law.damping == 0) return;
+      if (law.is_plain()) vectors_have_dashpots_ = vectors_have_dashpots_ || law.damping > 0;
+      if (law.stiffness == 0 && law.quartic == 0 && law.cubic == 0 && law.damping == 0) return;
       has_rest_lengths_ = has_rest_lengths_ || (law.damping > 0 && law.rest_length > 0);
       is_proportional =
           is_proportional && (law.damping == 0 || (law.stiffness > 0 && law.quartic == 0));
@@ -358,7 +419,7 @@ class MassSpring final : public CapableSystem {
     constexpr double roundings = 8 * machine_epsilon;
     if (!has_dashpots_) {
       damping_time_ = 0;
-    } else if (is_proportional && most - least <= roundings * most) {
+    } else if (network.general.empty() && is_proportional && most - least <= roundings * most) {
       damping_time_ = most;
     }
   }
@@ -369,8 +430,12 @@ class MassSpring final : public CapableSystem {
     Point force;
     double power;
   };
-  static SecantDashpot secant_dashpot(const SpringLaw& law, const Point& d0, const Point& d1,
+  template <class Law>
+  static SecantDashpot secant_dashpot(const Law& law, const Point& d0, const Point& d1,
                                       const Point& d2, const BackwardRate& rate) {
+    if constexpr (std::is_same_v<Law, SpringLaw>) {
+      if (law.is_slack(d0.norm())) return {Point::Zero(), 0};
+    }
     if (D == 1 || law.rest_length == 0) {
       const Point w = rate.a0 * d0 + rate.a1 * d1 + rate.a2 * d2;
       return {law.damping * w, law.damping * w.squaredNorm()};
@@ -386,9 +451,14 @@ class MassSpring final : public CapableSystem {
     network.node_mass.setOnes(layout_.nodes());  // of no effect on C, as are loads
     network.driven_loads.clear();
     for_each_spring(network, [](auto& spring) {
-      spring.law = {.stiffness = spring.law.damping, .rest_length = spring.law.rest_length};
-      spring.holds = Holds::always;
-      spring.direction = 0;
+      spring.law = {.stiffness = spring.law.damping,
+                    .rest_length = spring.law.rest_length,
+                    .breaks_at = spring.law.breaks_at,
+                    .pulls_only = spring.law.pulls_only};
+      if constexpr (requires { spring.holds; }) {
+        spring.holds = Holds::always;
+        spring.direction = 0;
+      }
     });
     const Forces forces = by_node_ ? Forces::by_vectors : Forces::spring_by_spring;
     return std::unique_ptr<const MassSpring>(new MassSpring(std::move(network), forces, layout_));
@@ -397,21 +467,40 @@ class MassSpring final : public CapableSystem {
   [[gnu::always_inline]] void sum_spring_by_spring(const Moved& now, MutableVec& f) const {
     f = weight_;
     springs_->add_forces(
+        now.phases,
         [&](const auto& spring) {
           return spring_force(spring.law, springs_->between(now, spring));
         },
         f);
   }
-  // Not for dashpots that vectors sum.
+  void add_general_forces(const At& at, MutableVec& f) const {
+    const Curves curves = driven_.values(at);
+    beside_->add_general_forces(
+        at.phases,
+        [&](const auto& spring) {
+          return spring_force(spring.law, beside_->between({at.q, curves}, spring));
+        },
+        f);
+  }
+  // Beside vectors, dashpots that they sum are added by them.
   void add_friction(const At& at, MutableVec f) const {
     if (has_dashpots_) {
       const Curves curves = driven_.values(at), rates = driven_.rates(at);
-      springs_->add_forces(
-          [&](const auto& spring) {
-            return dashpot_force(spring.law, springs_->between({at.q, curves}, spring),
-                                 springs_->apart({at.v, rates}, spring));
-          },
-          f);
+      const SpringLists<D>& springs = by_node_ ? *beside_ : *springs_;
+      const auto friction = [&](const auto& spring) {
+        return dashpot_force(spring.law, springs.between({at.q, curves}, spring),
+                             springs.apart({at.v, rates}, spring));
+      };
+      if (by_node_) {
+        if (vectors_have_dashpots_) {
+          Vec plain(size());
+          by_node_->sum_friction(at, plain);
+          f += plain;
+        }
+        springs.add_general_forces(at.phases, friction, f);
+      } else {
+        springs.add_forces(at.phases, friction, f);
+      }
     }
     if (air_damping_ > 0) add_air(at, f);
   }
@@ -428,13 +517,15 @@ class MassSpring final : public CapableSystem {
     const auto note = [&](const auto& springs) {
       for (const auto& spring : springs) {
         linear_ = linear_ && (spring.law.is_linear() || keeps_directions());
-        if (spring.law.quartic > 0) has_quartic_ = true;
+        if (spring.law.quartic > 0 || spring.law.cubic != 0) has_quartic_ = true;
         kinks_ += turns_over(spring.law);
       }
     };
     note(network.links);
     note(network.image_links);
     note(network.anchors);
+    note(network.general);
+    linear_ = linear_ && switches_.empty();
   }
 
   void offer_split(const Network& network, Forces forces) {
@@ -494,11 +585,18 @@ class MassSpring final : public CapableSystem {
   Point between(const Moved& at, const Network::Anchor& anchor) const {
     return anchor.point.template head<D>() + at.of(anchor.curve) - layout_.at(at.q, anchor.i);
   }
+  MovingNodes<D> moving_nodes(const At& at) const {
+    return {at.q, at.v, driven_.values(at), driven_.rates(at)};
+  }
   Placed<D> placed(const At& at) const { return {layout_, at.q, driven_.values(at)}; }
 
   bool keeps_directions() const { return !directions_.empty(); }
-  bool turns_over(const SpringLaw& law) const {
+  bool turns_over(const PlainLaw& law) const {
     return D == 1 && law.rest_length > 0 && !keeps_directions();
+  }
+  // A cable is slack at length zero.
+  bool turns_over(const SpringLaw& law) const {
+    return turns_over(law.plain()) && !law.goes_slack();
   }
 
   void note_tension(const Network& network) {
@@ -529,22 +627,26 @@ class MassSpring final : public CapableSystem {
                            const BlockOf& block) {
     for (const int e : own.columns->links_left_out()) own.blocks.add_link_block(q, k, block, e);
     own.blocks.add_image_blocks(q, k, block);
+    own.blocks.add_general(q, k, block);
   }
 
   Layout<D> layout_;
   DrivenNetwork<D> driven_;
+  Switches<D> switches_;
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   Curves none_;                          // of a network that is not driven
   std::vector<signed char> directions_;  // of all springs in the lists' order; empty where none
   double constant_energy_, air_damping_;
-  bool has_dashpots_ = false;
+  bool has_dashpots_ = false, vectors_have_dashpots_ = false;
   bool has_rest_lengths_ = false;  // of springs with dashpots
   std::optional<double> damping_time_;
   bool linear_ = false;
   Index kinks_ = 0;
   bool has_quartic_ = false;
   std::optional<SpringsByNode<D>> by_node_;
+  std::optional<SpringLists<D>> beside_;  // springs that by_node_ lacks: those that are not plain
+  std::vector<Phase> all_taut_;           // of these, by their numbers
   std::optional<Split> split_;
   Index entries_ = 0;  // of K, or more where springs join the same nodes
   // The springs that lists and K are made of; links and image links only until then.

@@ -43,6 +43,15 @@ struct Network {
     int direction = 0;
     int curve = -1;  // of `curves`; -1: it is fixed
   };
+  // A spring whose law is not plain (SpringLaw::is_plain): between two different free nodes, or to
+  // a point where j < 0. `number`: that of its phase, see At::phases.
+  struct General {
+    int i, j;
+    Eigen::Vector3d point;
+    SpringLaw law;
+    bool stiff = false;
+    int curve = -1, number = 0;
+  };
   // A force factor curve(t) on a node [N], with V = -force.(x - origin).
   struct DrivenLoad {
     int i, curve;
@@ -57,6 +66,7 @@ struct Network {
   std::vector<Anchor> anchors{};
   double constant_energy = 0;  // [J], of all that does not move
   std::vector<ImageLink> image_links{};
+  std::vector<General> general{};
   // Bit d of a node is set if its coordinate d stays zero and is no unknown; empty if there are
   // none.
   std::vector<unsigned> zero_coordinates{};

@@ -12,6 +12,7 @@ inline Network half_of_split(Network network, bool stiff) {
   std::erase_if(network.links, is_other);
   std::erase_if(network.image_links, is_other);
   std::erase_if(network.anchors, is_other);
+  std::erase_if(network.general, is_other);
   if (stiff) {
     network.gravity.setZero();
     network.load.resize(0);
@@ -28,6 +29,10 @@ inline std::vector<int> pulled_nodes(const Network& network) {
   for (const auto& link : network.links) is_pulled[link.i] = is_pulled[link.j] = 1;
   for (const auto& link : network.image_links) is_pulled[link.i] = is_pulled[link.j] = 1;
   for (const auto& anchor : network.anchors) is_pulled[anchor.i] = 1;
+  for (const auto& spring : network.general) {
+    is_pulled[spring.i] = 1;
+    if (spring.j >= 0) is_pulled[spring.j] = 1;
+  }
   std::vector<int> nodes;
   for (int i = 0; i < std::ssize(is_pulled); ++i) {
     if (is_pulled[i]) nodes.push_back(i);
@@ -54,6 +59,10 @@ inline Network network_among(const std::vector<int>& nodes, const Network& netwo
   renumber(core.links);
   renumber(core.image_links);
   for (auto& anchor : core.anchors) anchor.i = place[anchor.i];
+  for (auto& spring : core.general) {
+    spring.i = place[spring.i];
+    if (spring.j >= 0) spring.j = place[spring.j];
+  }
   return core;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "qddot/model/block_pattern.hpp"
@@ -22,6 +24,7 @@ class StiffnessBlocks {
   using Anchor = typename Lists::Anchor;
   using EdgeLink = typename Lists::EdgeLink;
   using EdgeAnchor = typename Lists::EdgeAnchor;
+  using General = typename Lists::General;
   using Block = Eigen::Matrix<double, D, D>;
 
   // `springs` are those of the network. Keeps references to them and to the layout, which must
@@ -39,6 +42,9 @@ class StiffnessBlocks {
     link_places_.reserve(network.links.size());
     place_all(network.links, link_places_);
     place_all(network.image_links, image_places_);
+    for (const auto& spring : network.general) {
+      general_places_[{spring.i, spring.j}] = spring.j < 0 ? 0 : pattern.place(spring.i, spring.j);
+    }
   }
 
   const SymmetricMatrix& pattern() const { return pattern_; }
@@ -48,11 +54,21 @@ class StiffnessBlocks {
   template <class BlockOf>
   void assemble(const Moved& q, SymmetricMatrix& k, const BlockOf& block) const {
     k.coeffs().setZero();
-    springs_.for_each([&](const auto& spring) {
+    springs_.for_each(q.phases, [&](const auto& spring) {
       subtract_own_blocks(spring, block(spring.law, springs_.between(q, spring)), k);
     });
     for (std::size_t e = 0; e < springs_.links().size(); ++e) add_link_block(q, k, block, e);
     add_image_blocks(q, k, block);
+    springs_.for_each_general(
+        q.phases, [&](const General& spring) { add_general_block(q, k, block, spring); });
+  }
+  // Adds to K that of the springs which are not plain.
+  template <class BlockOf>
+  void add_general(const Moved& q, SymmetricMatrix& k, const BlockOf& block) const {
+    springs_.for_each_general(q.phases, [&](const General& spring) {
+      subtract_own_blocks(spring, block(spring.law, springs_.between(q, spring)), k);
+      add_general_block(q, k, block, spring);
+    });
   }
 
   // Adds the off-diagonal block of link number e.
@@ -111,6 +127,18 @@ class StiffnessBlocks {
     edge_subtract_from_diagonal(k, anchor.i, b);
   }
 
+  void subtract_own_blocks(const General& spring, const Block& b, SymmetricMatrix& k) const {
+    edge_subtract_from_diagonal(k, spring.i, b);
+    if (spring.j >= 0) edge_subtract_from_diagonal(k, spring.j, b);
+  }
+  template <class BlockOf>
+  void add_general_block(const Moved& q, SymmetricMatrix& k, const BlockOf& block,
+                         const General& spring) const {
+    if (spring.j < 0) return;
+    edge_add_below_diagonal(k, spring, general_places_.at({spring.i, spring.j}),
+                            block(spring.law, springs_.between(q, spring)));
+  }
+
   // `first`: the first unknown of a node whose D coordinates are all unknowns.
   static void subtract_from_diagonal(SymmetricMatrix& k, int first, const Block& b) {
     for (int d = 0; d < D; ++d) {
@@ -134,7 +162,8 @@ class StiffnessBlocks {
       }
     }
   }
-  void edge_add_below_diagonal(SymmetricMatrix& k, const EdgeLink& link, int place,
+  template <class Ends>
+  void edge_add_below_diagonal(SymmetricMatrix& k, const Ends& link, int place,
                                const Block& b) const {
     const int node = std::min(link.i, link.j), below = std::max(link.i, link.j);
     const int columns = layout_.count(node), rows = layout_.count(below);
@@ -149,6 +178,7 @@ class StiffnessBlocks {
   const Lists& springs_;
   SymmetricMatrix pattern_;
   std::vector<int> link_places_, image_places_, edge_places_;  // as BlockPattern has them
+  std::map<std::pair<int, int>, int> general_places_;          // of i and j
 };
 
 }  // namespace qddot

@@ -8,11 +8,13 @@
 #include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
 #include "qddot/model/mass.hpp"
+#include "qddot/model/spring.hpp"
 
 namespace qddot {
 
@@ -26,34 +28,40 @@ using MutableVec = Eigen::Ref<Vec>;
 // diagonal entry, even a zero. Multiply with selfadjointView<Eigen::Lower>().
 using SymmetricMatrix = Eigen::SparseMatrix<double>;
 
-// The energy that damping has taken, and that moving supports and changing loads have given [J]; or
-// the rates of both [W]. An exact motion keeps E + dissipated - driven.
+// The energy that damping has taken, that moving supports and changing loads have given, and that
+// springs held when they broke [J]; or the rates of the first two [W]. An exact motion keeps
+// E + dissipated - driven + released.
 struct Work {
-  double dissipated = 0, driven = 0;
+  double dissipated = 0, driven = 0, released = 0;
 
-  double taken() const { return dissipated - driven; }
+  double taken() const { return dissipated - driven + released; }
   Work& operator+=(const Work& other) {
     dissipated += other.dissipated;
     driven += other.driven;
+    released += other.released;
     return *this;
   }
   friend Work operator+(Work a, const Work& b) { return a += b; }
   friend Work operator-(const Work& a, const Work& b) { return a + -1.0 * b; }
-  friend Work operator*(double s, const Work& a) { return {s * a.dissipated, s * a.driven}; }
+  friend Work operator*(double s, const Work& a) {
+    return {s * a.dissipated, s * a.driven, s * a.released};
+  }
 };
 
 // The energy that has passed through a system [J], with which errors of its balance grow.
 inline double throughput(const Work& work) {
-  return std::max(std::abs(work.driven), work.dissipated);
+  return std::max({std::abs(work.driven), work.dissipated, work.released});
 }
 
 // The state of a system at time t [s]: unknown positions q [m], node after node (x0 y0 z0 x1 ...),
 // and velocities v = q' [m/s]. Both have length n = System::size(). `work` is that on the way [J],
-// by the method's own quadrature; a run adds to it.
+// by the method's own quadrature; a run adds to it. `phases`: those of the system's springs that
+// may break or go slack (Switching), once one is broken; else nullptr.
 struct State {
   double t = 0;
   Vec q, v;
   Work work{};
+  std::shared_ptr<const std::vector<Phase>> phases{};
 };
 
 // A vector of numbers that is read in place: those of a Vec, or of a part of one, which must
@@ -77,7 +85,9 @@ class VecView : public Eigen::Map<const Vec> {
 struct At {
   At(double time, VecView positions, VecView velocities) : t(time), q(positions), v(velocities) {}
   At(double time, VecView positions) : At(time, positions, VecView(nullptr, 0)) {}
-  At(const State& state) : At(state.t, state.q, state.v) {}
+  At(const State& state) : At(state.t, state.q, state.v) {
+    if (state.phases) phases = state.phases->data();
+  }
   template <class Derived>
   requires std::convertible_to<const Derived&, VecView> At(
       const Eigen::DenseBase<Derived>& positions)
@@ -88,6 +98,7 @@ struct At {
     const bool has_v = v.size() > 0;
     At part{t, {q.data() + first, count}, {has_v ? v.data() + first : nullptr, has_v ? count : 0}};
     part.within = within;
+    part.phases = phases;
     return part;
   }
 
@@ -97,6 +108,8 @@ struct At {
   // t; NaN: t itself, and behind a corner at t. Steps that end on a corner, and stages beyond it,
   // belong to the piece before it.
   double within = std::numeric_limits<double>::quiet_NaN();
+  // The phases of springs that may go slack or break, by their numbers; nullptr: all by_length.
+  const Phase* phases = nullptr;
 };
 
 class BesideForce;
@@ -108,6 +121,7 @@ class Validity;
 class Kinks;
 class Damping;
 class Driving;
+class Switching;
 struct Split;
 
 // A mechanical system with the Lagrangian L = T - V, T = 1/2 v'Mv, as in the lecture. It gives M,
@@ -181,6 +195,7 @@ class System {
   virtual const Kinks* kinks() const { return nullptr; }
   virtual const Damping* damping() const { return nullptr; }
   virtual const Driving* driving() const { return nullptr; }
+  virtual const Switching* switching() const { return nullptr; }
   // The stiff and the soft forces. A system of blocks has none; each of its blocks may.
   virtual const Split* split() const { return nullptr; }
   // The systems that no force couples, in order, each with a run of consecutive unknowns of its

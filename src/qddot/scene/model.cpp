@@ -184,6 +184,8 @@ double Model::driven(const State& state) const {
          energy_of_driven_springs(*pieces_, 0);
 }
 
+const std::vector<std::size_t>& Model::general_springs() const { return pieces_->general; }
+
 std::vector<std::size_t> Model::massless_nodes() const {
   std::vector<std::size_t> massless;
   for (Index first = 0; pieces_->is_own && first < pieces_->system->size();

@@ -73,9 +73,15 @@ class Model {
   double dissipated(const State& state) const;
   // The energy that moving supports and changing loads have given up to state.t [J].
   double driven(const State& state) const;
-  // T + V + dissipated - driven [J], which an exact motion keeps, without the rounding of terms
-  // that cancel if something falls.
+  // T + V + dissipated - driven + released [J], which an exact motion keeps, without the rounding
+  // of terms that cancel if something falls.
   double energy(const State& state) const;
+
+  // The energy that springs held when they broke, up to state.t [J].
+  double released(const State& state) const { return state.work.released; }
+  // The scene's numbers of the springs that are not plain (SpringLaw::is_plain), by the numbers of
+  // their phases; see Switching.
+  const std::vector<std::size_t>& general_springs() const;
 
   // Massless nodes that have unknowns, ascending: most methods cannot run them.
   std::vector<std::size_t> massless_nodes() const;

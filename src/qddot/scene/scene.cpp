@@ -46,6 +46,27 @@ void check_node(const Entry& entry, const Node& node) {
   entry.check_not_negative("mass", node.mass);
 }
 
+// Refuses springs that go slack or break where nothing says what happens then.
+void check_phases(const Entry& entry, const Spring& spring, const std::vector<Node>& nodes) {
+  const SpringLaw& law = spring.law;
+  const Node &a = nodes[spring.nodes[0]], &b = nodes[spring.nodes[1]];
+  if (!(law.breaks_at > 0))
+    entry.refuse("breaks_at",
+                 fmt::format("{} is not allowed; allowed are strains above 0", law.breaks_at));
+  if (law.can_break() && law.rest_length == 0)
+    entry.refuse("breaks_at",
+                 "a spring of rest length zero has no strain; allowed are rest lengths above 0");
+  if (law.can_break() && a.pinned && b.pinned)
+    entry.refuse("breaks_at",
+                 "the spring joins two pinned nodes; allowed are springs on a node "
+                 "that moves");
+  const auto is_massless = [](const Node& node) { return !node.pinned && node.mass == 0; };
+  if ((law.goes_slack() || law.can_break()) && (is_massless(a) || is_massless(b)))
+    entry.refuse(law.can_break() ? "breaks_at" : "pulls_only",
+                 "a node without mass is on it, which nothing would hold; allowed are nodes with "
+                 "mass or pins");
+}
+
 void check_spring(const Entry& entry, const Spring& spring, const std::vector<Node>& nodes) {
   const auto [i, j] = spring.nodes;
   for (const std::size_t node : {i, j}) {
@@ -63,6 +84,10 @@ void check_spring(const Entry& entry, const Spring& spring, const std::vector<No
   entry.check_not_negative("rest_length", spring.law.rest_length);
   entry.check_not_negative("quartic", spring.law.quartic);
   entry.check_not_negative("damping", spring.law.damping);
+  if (!std::isfinite(spring.law.cubic))
+    entry.refuse("cubic",
+                 fmt::format("{} is not allowed; allowed are finite numbers", spring.law.cubic));
+  check_phases(entry, spring, nodes);
   if (spring.law.rest_length > 0 && (nodes[j].position - nodes[i].position).norm() == 0)
     entry.refuse("rest_length",
                  fmt::format("{} is not allowed as nodes {} and {} coincide; allowed is 0",
@@ -172,7 +197,7 @@ class Hash {
 std::vector<bool> nodes_on_springs(const Scene& scene) {
   std::vector<bool> is_held(scene.nodes.size(), false);
   for (const Spring& spring : scene.springs) {
-    if (spring.law.stiffness == 0 && spring.law.quartic == 0) continue;
+    if (spring.law.stiffness == 0 && spring.law.quartic == 0 && spring.law.cubic == 0) continue;
     for (const std::size_t node : spring.nodes) is_held[node] = true;
   }
   return is_held;
@@ -187,6 +212,12 @@ bool is_damped(const Scene& scene) {
 bool is_driven(const Scene& scene) {
   return scene.gravity_curve >= 0 ||
          std::ranges::any_of(scene.nodes, [](const Node& node) { return node.curve >= 0; });
+}
+
+bool changes_phases(const Scene& scene) {
+  return std::ranges::any_of(scene.springs, [](const Spring& spring) {
+    return spring.law.goes_slack() || spring.law.can_break();
+  });
 }
 
 std::optional<Scene> with_supports_at_start(const Scene& scene) {
@@ -259,6 +290,14 @@ std::string content_hash(const Scene& scene) {
   if (is_damped(scene)) {
     hash.add(scene.air_damping);
     for (const Spring& spring : scene.springs) hash.add(spring.law.damping);
+  }
+  // Likewise springs that are not plain.
+  for (const Spring& spring : scene.springs) {
+    if (spring.law.is_plain()) continue;
+    hash.add(static_cast<std::uint64_t>(&spring - scene.springs.data()));
+    hash.add(spring.law.cubic);
+    hash.add(spring.law.breaks_at);
+    hash.add(std::uint64_t(spring.law.goes_slack()));
   }
   // Likewise what changes with time.
   if (is_driven(scene)) {

@@ -77,6 +77,9 @@ bool is_damped(const Scene& scene);
 // Whether anything depends on time: a support moves, or a load or gravity changes.
 bool is_driven(const Scene& scene);
 
+// Whether a spring may go slack or break.
+bool changes_phases(const Scene& scene);
+
 // The same scene with all moving supports where they are at t = 0, and displaced from there;
 // nothing if they are there already.
 std::optional<Scene> with_supports_at_start(const Scene& scene);
@@ -98,9 +101,10 @@ std::vector<bool> nodes_on_springs(const Scene& scene);
 //   every number is finite, and the dimension is 1, 2 or 3;
 //   every number of a curve is finite, frequencies are not negative, and times of tables ascend;
 //   masses, stiffnesses, rest lengths and dampings are not negative; `until` and `stiff_above` are
-//   above 0; each spring joins two different existing nodes, which are apart if its rest_length > 0
-//   (else it has no direction); a node with a load has mass, a pin, or a spring that pulls; each
-//   face has three different existing nodes.
+//   above 0; strains at which springs break are above 0, and such springs and cables have no
+//   massless node; each spring joins two different existing nodes, which are apart if its
+//   rest_length > 0 (else it has no direction); a node with a load has mass, a pin, or a spring
+//   that pulls; each face has three different existing nodes.
 void validate(const Scene& scene, const std::string& source);
 
 // A hash of everything in the scene that decides its motion, so not of its name; the same on every

@@ -1,5 +1,7 @@
 #include "qddot/scene/scene_arrays.hpp"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
@@ -70,6 +72,11 @@ std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& no
   const Values rest_length("rest_length", is_drawn ? none : a.rest_length, count);
   const Values quartic("quartic", a.quartic.size() == 0 ? none : a.quartic, count);
   const Values damping("damping", a.damping.size() == 0 ? none : a.damping, count);
+  const Eigen::VectorXd never =
+      Eigen::VectorXd::Constant(1, std::numeric_limits<double>::infinity());
+  const Values cubic("cubic", a.cubic.size() == 0 ? none : a.cubic, count);
+  const Values breaks_at("breaks_at", a.breaks_at.size() == 0 ? never : a.breaks_at, count);
+  const Values pulls_only("pulls_only", a.pulls_only.size() == 0 ? none : a.pulls_only, count);
   std::vector<Spring> springs;
   springs.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -82,7 +89,10 @@ std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& no
                        {.stiffness = stiffness[i],
                         .rest_length = is_drawn ? length : rest_length[i],
                         .quartic = quartic[i],
-                        .damping = damping[i]}});
+                        .damping = damping[i],
+                        .cubic = cubic[i],
+                        .breaks_at = breaks_at[i],
+                        .pulls_only = pulls_only[i] != 0}});
   }
   return springs;
 }

@@ -22,6 +22,9 @@ struct SceneArrays {
   Eigen::VectorXd rest_length{};  // [m], of each spring or of all; empty: its length as given
   Eigen::VectorXd quartic{};      // [N/m^3], likewise; empty: none
   Eigen::VectorXd damping{};      // of dashpots [N s/m], likewise; empty: none
+  Eigen::VectorXd cubic{};        // [N/m^2], likewise; empty: none
+  Eigen::VectorXd breaks_at{};    // strains, likewise; empty, or infinite: never
+  Eigen::VectorXd pulls_only{};   // 1 where a spring is a cable, else 0, likewise; empty: none
   double air_damping = 0;         // [1/s]
   // Curves of time, the number of that of each node or -1, and that of gravity; see Scene.
   std::vector<TimeCurve> curves{};

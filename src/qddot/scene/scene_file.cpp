@@ -1,6 +1,8 @@
 #include "qddot/scene/scene_file.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -33,15 +35,31 @@ Node node_in(const TomlTable& table, int dimension, const CurveReader& curves) {
   return node;
 }
 
+constexpr double never = std::numeric_limits<double>::infinity();
+
 Spring spring_in(const TomlTable& table, const std::vector<Node>& nodes) {
-  table.allow_keys({"nodes", "stiffness", "rest_length", "quartic", "damping"});
+  table.allow_keys({"nodes", "stiffness", "rest_length", "cubic", "quartic", "damping",
+                    "pulls_only", "breaks_at"});
   const auto [i, j] = table.node_pair("nodes", nodes.size());
   const double distance = (nodes[j].position - nodes[i].position).norm();
   return {.nodes = {i, j},
           .law = {.stiffness = table.number("stiffness", not_negative),
                   .rest_length = table.number_or(distance, "rest_length", not_negative),
                   .quartic = table.number_or(0, "quartic", not_negative),
-                  .damping = table.number_or(0, "damping", not_negative)}};
+                  .damping = table.number_or(0, "damping", not_negative),
+                  .cubic = table.number_or(0, "cubic"),
+                  .breaks_at = table.number_or(never, "breaks_at", positive),
+                  .pulls_only = table.flag_or_false("pulls_only")}};
+}
+
+// The keys of [mesh] and of [generator] that are for each of its springs.
+void set_laws(const TomlTable& table, Scene& scene) {
+  const double breaks_at = table.number_or(never, "breaks_at", positive);
+  const bool pulls_only = table.flag_or_false("pulls_only");
+  for (Spring& spring : scene.springs) {
+    if (table.has("breaks_at")) spring.law.breaks_at = breaks_at;
+    spring.law.pulls_only = spring.law.pulls_only || pulls_only;
+  }
 }
 
 void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits,
@@ -91,9 +109,11 @@ Scene generated(const TomlTable& file, const TomlTable& table, const SceneLimits
   if (!generator) table.refuse("kind", generator_names());
   GeneratorValues values;
   for (const std::string& key : table.keys()) {
-    if (key != "kind" && key != "load" && key != "motion") values[key] = table.number(key);
+    constexpr std::array own{"kind", "load", "motion", "pulls_only", "breaks_at"};
+    if (std::ranges::find(own, key) == own.end()) values[key] = table.number(key);
   }
   Scene scene = generate(*generator, values, table.place(), limits);
+  set_laws(table, scene);
   const CurveReader curves(file, scene);
   scene.gravity_curve = curves.read(file, "gravity_in_time");
   add_loads(table, {}, curves, scene);
@@ -183,6 +203,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
     scene.gravity_curve = curves.read(file, "gravity_in_time");
     add_mesh(file.table("mesh"), folder, read, limits, curves, scene);
     add_damping(file.table("mesh"), scene);
+    set_laws(file.table("mesh"), scene);
   } else {
     scene.dimension = file.integer("dimension", 1, 3);
     const CurveReader curves(file, scene);

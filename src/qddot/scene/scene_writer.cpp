@@ -163,6 +163,9 @@ void add_spring(const Spring& spring, TomlText& out) {
   out.line("rest_length", spring.law.rest_length);
   if (!is_plain_zero(spring.law.quartic)) out.line("quartic", spring.law.quartic);
   if (!is_plain_zero(spring.law.damping)) out.line("damping", spring.law.damping);
+  if (!is_plain_zero(spring.law.cubic)) out.line("cubic", spring.law.cubic);
+  if (spring.law.can_break()) out.line("breaks_at", spring.law.breaks_at);
+  if (spring.law.pulls_only) out.add("pulls_only = true\n");
 }
 
 // A file has no functions of the caller's own, and one table a curve.

@@ -58,6 +58,7 @@ class Formula {
   double force_beside(const At& at, MutableVec f, BesideForce& beside) {
     return run_.counted().force_beside(at, f, beside);
   }
+  double potential(const At& at) const { return run_.counted().potential(at); }
   void force(const System& part, const At& at, MutableVec f) { run_.counted().force(part, at, f); }
   const Vec& friction() const { return run_.counted().friction(); }
   // Moves that friction into a vector, in place of a copy.

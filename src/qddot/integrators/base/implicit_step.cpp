@@ -189,7 +189,7 @@ std::optional<double> ImplicitStep::find_secant_friction() {
   const Stopwatch watch(clock(), &Seconds::force);
   secant_.resize(x_.size());
   const BackwardRate rate{x_, at1_->q, at2_->q, rate_, a1_, a2_, t_, at1_->t, at2_->t};
-  const auto power = system().damping()->secant_friction(rate, velocity_, secant_);
+  const auto power = run_.counted().secant_friction(rate, velocity_, secant_);
   if (!power) at1_ = nullptr;
   return power;
 }
@@ -289,7 +289,7 @@ double ImplicitStep::search(const Vec& q, double s) {
 
 double ImplicitStep::objective(const Vec& q, double s) {
   x_ = q + u_;
-  const double potential = system().potential({t_, x_});
+  const double potential = this->potential({t_, x_});
   x_ = u_ - free_;
   const double g = system().kinetic(x_) + s * potential;
   if (!is_damped_) return g;

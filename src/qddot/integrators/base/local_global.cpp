@@ -56,7 +56,7 @@ double LocalGlobal::find_friction(const Vec& v) {
   q_ = now_->q + h_ * v;
   friction_.resize(q_.size());
   const BackwardRate rate{q_, now_->q, now_->q, 1 / h_, -1 / h_, 0, t_, now_->t, now_->t};
-  if (const auto taken = system().damping()->secant_friction(rate, v, friction_)) return *taken;
+  if (const auto taken = run_.counted().secant_friction(rate, v, friction_)) return *taken;
   const double taken = power({t_, now_->q, v}).dissipated;
   friction_ = friction();
   return taken;
@@ -82,7 +82,7 @@ double LocalGlobal::objective(const Vec& v) {
   q_ = v - now_->v;
   const double kinetic = system().kinetic(q_);
   q_ = now_->q + h_ * v;
-  const double g = kinetic + system().potential({t_, q_});
+  const double g = kinetic + potential({t_, q_});
   return is_damped() ? g + h_ / 2 * find_friction(v) : g;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/break_errors.hpp"
 #include "qddot/measure/advice/failure.hpp"
 #include "qddot/measure/advice/search.hpp"
 #include "qddot/measure/motion/interruption.hpp"
@@ -28,6 +29,7 @@ void fill(Answer& answer, const Search& search, const Trial& trial, const Model&
   answer.end = trial.path.empty() ? model.initial() : trial.path.back();
   answer.nodes = model.expand(answer.end);
   answer.seconds.run = trial.seconds;
+  answer.break_errors = break_errors(search, trial);
   const auto bound = search.check().bound(trial);
   if (bound && bound->by) answer.seconds.check = bound->by->seconds;
 }
@@ -128,6 +130,12 @@ Answer solve(const Model& model, double until, const Wanted& wanted, const Scene
   if (found) {
     fill(answer, search, *found, model);
     answer.is_reached = true;
+    if (std::string unclear =
+            unclear_order(answer.summary.breaks, answer.break_errors, model.general_springs());
+        !unclear.empty()) {
+      answer.is_reached = false;
+      answer.why = std::move(unclear);
+    }
     answer.error_estimate = search.check().bound(*found)->error;
     answer.error_estimate_kind = kind_of(search, *found, wanted.of);
     answer.advised_by = found->method->order == 0        ? AdvisedBy::modes

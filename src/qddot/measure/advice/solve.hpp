@@ -64,6 +64,8 @@ struct Answer {
   // The times at which the run ended steps beside its own, if it did [s]. A run that repeats it has
   // to do so as well, or its errors are others.
   std::vector<double> looks{};
+  // A bound of the error of each break's time [s], in the order of summary.breaks.
+  std::vector<double> break_errors{};
   State end{};                // the state it reached, in the model's unknowns
   std::vector<Node> nodes{};  // all nodes of the scene in that state
   int runs = 0;               // made in all

@@ -13,6 +13,13 @@
 
 namespace qddot::inline measure {
 
+std::vector<Index> broken_springs(const Trial& trial) {
+  std::vector<Index> numbers;
+  for (const Break& one : trial.summary.breaks) numbers.push_back(one.number);
+  std::ranges::sort(numbers);
+  return numbers;
+}
+
 Stage::Stage(const Model& model, double until, AccuracyOf of, const Scene* drawn,
              const Rules& rules)
     : model_(model),
@@ -146,6 +153,7 @@ double Stage::energy_rounding(const Trial& trial) const {
 }
 
 double Stage::distance(const Trial& one, const Trial& other) const {
+  if (broken_springs(one) != broken_springs(other)) return std::numeric_limits<double>::infinity();
   // Between the looks the largest distance may be larger.
   if (of_ == AccuracyOf::path) return rules_.doubt * std::ranges::max(distances(one, other));
   return position_error(model_, one.path.back(), other.path.back(), scales_);

@@ -38,6 +38,9 @@ struct Trial {
   bool reached_end() const { return summary.outcome == Outcome::reached_end; }
 };
 
+// The numbers of the springs that broke, ascending.
+std::vector<Index> broken_springs(const Trial& trial);
+
 // The limits of a run. A limit of forces ends it after the same work on every machine.
 struct Limits {
   double seconds = std::numeric_limits<double>::infinity();
@@ -74,8 +77,8 @@ class Stage {
   // Takes the scales of errors from the trial, which reached the end. Errors need this first.
   void measure_by(const Trial& trial);
 
-  // The distance of two trials that reached the end, relative to the motion: at the end, or the
-  // largest at any look if the path is asked for.
+  // The distance of two trials that reached the end, infinite if other springs broke; relative to
+  // the motion: at the end, or the largest at any look if the path is asked for.
   double distance(const Trial& one, const Trial& other) const;
   // The distance at each look.
   std::vector<double> distances(const Trial& one, const Trial& other) const;

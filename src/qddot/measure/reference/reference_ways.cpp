@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <boost/numeric/odeint.hpp>
 #include <fmt/format.h>
 
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/breaks.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/random_times.hpp"
@@ -131,6 +133,7 @@ std::optional<Solution> seen_run(const Model& scene, const Method& method, const
   const Summary summary = integrator->advance(solution.end, times.back(), each, deadline.token());
   stop_if_interrupted();
   if (summary.outcome != Outcome::reached_end) return {};
+  solution.breaks = summary.breaks;
   return solution;
 }
 
@@ -150,9 +153,23 @@ std::optional<Solution> composition(const Model& scene, const State& initial, do
   return solution;
 }
 
+// The same by a method that lands its steps on the moments at which springs go slack or break.
+std::optional<Solution> by_error_control(const Model& scene, double until, double tolerance,
+                                         double seconds) {
+  const double rtol = std::max(tolerance, least_rtol);
+  const Method& method = *find_method("arkode_erk8");
+  auto solution = seen_run(scene, method, with_tolerance_scales({.rtol = rtol}, scene),
+                           scene.initial(), {until}, seconds);
+  if (!solution) return solution;
+  solution->knob = tolerance;
+  solution->made_by = fmt::format("{} at rtol = {:.0e}", method.name, rtol);
+  return solution;
+}
+
 std::optional<Solution> fehlberg(const Model& scene, double until, double tolerance,
                                  const Scales& scales, double seconds) {
   const System& system = scene.system();
+  if (system.switching()) return by_error_control(scene, until, tolerance, seconds);
   const auto parts = system.blocks();
   Solution solution{.end = scene.initial(), .scales = scales, .knob = tolerance};
   solution.end.t = until;
@@ -178,8 +195,31 @@ std::optional<Solution> fehlberg(const Model& scene, double until, double tolera
   return solution;
 }
 
+namespace {
+
+// Throws NoReference unless both solutions break the same springs, in an order that is beyond their
+// errors.
+void require_same_breaks(const Model& scene, const Solution& one, const Solution& other) {
+  std::vector<double> errors;
+  for (const Break& own : one.breaks) {
+    const auto same = std::ranges::find(other.breaks, own.number, &Break::number);
+    const double apart = same == other.breaks.end() ? std::numeric_limits<double>::infinity()
+                                                    : std::abs(same->t - own.t);
+    errors.push_back(safety * apart + rounding_of_moment(own.t));
+  }
+  const bool are_same = one.breaks.size() == other.breaks.size() &&
+                        std::ranges::none_of(errors, [](double e) { return std::isinf(e); });
+  std::string why = unclear_order(one.breaks, errors, scene.general_springs());
+  if (!are_same) why = "other springs break by the two methods";
+  if (!why.empty())
+    throw NoReference(fmt::format("no reference: {}: ask for an earlier end (--until)", why));
+}
+
+}  // namespace
+
 Reference joined(const Model& scene, const Solution& one, const Solution& other,
                  const Errors& rounding_effect) {
+  require_same_breaks(scene, one, other);
   const double energy = scene.energy(scene.initial());
   Errors certified = errors_between(scene, one.end, other.end, scene.energy(other.end), one.scales);
   certified = larger(certified, larger(rounding_effect, larger(one.change, other.change)));

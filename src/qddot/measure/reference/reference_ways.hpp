@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "qddot/integrators/integrator.hpp"
 #include "qddot/integrators/method.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/reference/reference.hpp"
@@ -16,6 +17,7 @@ struct Solution {
   Scales scales{};
   double knob = 0;
   std::string made_by{};
+  std::vector<Break> breaks{};
   std::vector<State> path{};  // at some of the looks, the end included
   Errors change = no_error;   // change that refinement may still make; zero if not refined
 };
@@ -36,7 +38,8 @@ const Method& resolving_method(const System& system);
 std::optional<Solution> composition(const Model& scene, const State& initial, double until,
                                     double h, double seconds);
 
-// The motion by Fehlberg 7(8), in the variables (q - q0) / displacement and v / speed, which are of
+// The motion by Fehlberg 7(8), or by ARKODE's pair of order 8 where springs go slack or break; in
+// the variables (q - q0) / displacement and v / speed, which are of
 // order one. Each part of the scene has its own scales and steps.
 std::optional<Solution> fehlberg(const Model& scene, double until, double tolerance,
                                  const Scales& scales, double seconds);

@@ -45,7 +45,7 @@ class Slicer {
     result_.gathered.resize((result_.places + slice_rows - 1) / slice_rows);
     for (int row = 0; row < nodes; ++row) place_[order[row]] = row;
     std::iota(place_.begin() + nodes, place_.end(), rows);
-    for (const SpringLaw& law : neighbours.laws.values()) {
+    for (const PlainLaw& law : neighbours.laws.values()) {
       if (law.quartic > 0) result_.law_vectors = 3;
       if (law.rest_length > 0) result_.law_vectors = std::max(result_.law_vectors, 2);
       has_dashpots_ = has_dashpots_ || law.damping > 0;
@@ -105,23 +105,23 @@ class Slicer {
         result_.gathered[place / slice_rows] = true;
       }
     }
-    static constexpr SpringLaw none;
-    std::array<const SpringLaw*, slice_rows> laws;
+    static constexpr PlainLaw none;
+    std::array<const PlainLaw*, slice_rows> laws;
     for (int t = 0; t < slice_rows; ++t) {
       const int e = slot.neighbour[t];
       laws[t] = e < 0 ? &none : &neighbours_.laws[rows_[t][e].law];
     }
-    const auto place_of = [&](double SpringLaw::*number) {
+    const auto place_of = [&](double PlainLaw::*number) {
       LawVector numbers;
       for (int t = 0; t < slice_rows; ++t) numbers[t] = laws[t]->*number;
       return slice_rows * laws_.number(numbers);
     };
-    const auto place = [&](int vector, double SpringLaw::*number) {
+    const auto place = [&](int vector, double PlainLaw::*number) {
       return vector < result_.law_vectors ? place_of(number) : 0;
     };
-    if (has_dashpots_) result_.slot_dashpots.push_back(place_of(&SpringLaw::damping));
-    result_.slot_laws.push_back({place(0, &SpringLaw::stiffness), place(1, &SpringLaw::rest_length),
-                                 place(2, &SpringLaw::quartic)});
+    if (has_dashpots_) result_.slot_dashpots.push_back(place_of(&PlainLaw::damping));
+    result_.slot_laws.push_back({place(0, &PlainLaw::stiffness), place(1, &PlainLaw::rest_length),
+                                 place(2, &PlainLaw::quartic)});
   }
 
   const Neighbours& neighbours_;

@@ -19,7 +19,7 @@ struct Neighbour {
 struct Neighbours {
   std::vector<int> first;  // of each node, and the end
   std::vector<Neighbour> ends;
-  RepeatedValues<SpringLaw> laws;
+  RepeatedValues<PlainLaw> laws;
 
   int nodes() const { return static_cast<int>(first.size()) - 1; }
   int count(int node) const { return first[node + 1] - first[node]; }
@@ -32,11 +32,11 @@ template <class ForEachEnd>
 Neighbours neighbours_of(int nodes, const ForEachEnd& for_each_end) {
   Neighbours result;
   result.first.assign(static_cast<std::size_t>(nodes) + 1, 0);
-  for_each_end([&](int node, int, const SpringLaw&) { ++result.first[node + 1]; });
+  for_each_end([&](int node, int, const PlainLaw&) { ++result.first[node + 1]; });
   std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
   result.ends.resize(static_cast<std::size_t>(result.first.back()));
   std::vector<int> next(result.first.begin(), result.first.end() - 1);
-  for_each_end([&](int node, int point, const SpringLaw& law) {
+  for_each_end([&](int node, int point, const PlainLaw& law) {
     result.ends[next[node]++] = {point, result.laws.number(law)};
   });
   return result;

@@ -61,17 +61,18 @@ SpringsByNode<D>::SpringsByNode(const Network& network, const CompactLinks& link
     image_ends.push_back({image_of(link.j, link.mirror), image_of(link.i, link.mirror)});
   }
   const auto for_each_end = [&](const auto& see) {
-    links.for_each([&](int i, int j, const SpringLaw& law) { see(i, j, law), see(j, i, law); });
+    links.for_each([&](int i, int j, const PlainLaw& law) { see(i, j, law), see(j, i, law); });
     for (std::size_t e = 0; e < anchored_to.size(); ++e) {
-      see(network.anchors[e].i, anchored_to[e], network.anchors[e].law);
+      see(network.anchors[e].i, anchored_to[e], network.anchors[e].law.plain());
     }
     for (std::size_t e = 0; e < image_ends.size(); ++e) {
       const auto& link = network.image_links[e];
-      see(link.i, image_ends[e][0], link.law), see(link.j, image_ends[e][1], link.law);
+      see(link.i, image_ends[e][0], link.law.plain());
+      see(link.j, image_ends[e][1], link.law.plain());
     }
   };
   const Neighbours neighbours = neighbours_of(nodes, for_each_end);
-  for (const SpringLaw& law : neighbours.laws.values()) {
+  for (const PlainLaw& law : neighbours.laws.values()) {
     if (law.damping > 0 && law.rest_length == 0) dashpots_are_directed_ = false;
   }
   slices_ = slice_neighbours(neighbours, static_cast<int>(points_.size() + images_.size()));

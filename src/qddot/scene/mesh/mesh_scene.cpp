@@ -192,7 +192,7 @@ void add_mesh(const TomlTable& table, const std::filesystem::path& folder, const
               const SceneLimits& limits, const CurveReader& curves, Scene& scene) {
   table.allow_keys({"file", "scale", "rotation", "shift", "weld", "velocity", "stiffness",
                     "bending_stiffness", "node_mass", "total_mass", "density", "pin", "load",
-                    "air_damping", "damping_time"});
+                    "air_damping", "damping_time", "pulls_only", "breaks_at"});
   const double scale = table.number_or(1, "scale", positive);
   const double stiffness = table.number("stiffness", not_negative);
   const double bending_stiffness = table.number_or(0, "bending_stiffness", not_negative);

@@ -61,7 +61,14 @@ void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
   const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
   const int i = numbers[from], j = numbers[to];
   const Eigen::Vector3d signs = mirror.diagonal();
-  if (i == no_number) {
+  if (!law.is_plain()) {  // of a part without mirrors
+    const std::size_t pin = i == no_number ? from : to;
+    const bool is_anchor = i == no_number || j == no_number;
+    network.general.push_back({i == no_number ? j : i, is_anchor ? -1 : j,
+                               is_anchor ? half.y[pin] : Eigen::Vector3d(Eigen::Vector3d::Zero()),
+                               law, stiff, is_anchor ? curves.of_node(pin, signs) : -1,
+                               static_cast<int>(network.general.size())});
+  } else if (i == no_number) {
     network.anchors.push_back(
         {j, signs.cwiseProduct(half.y[from]), law, holds, stiff, 0, curves.of_node(from, signs)});
   } else if (j == no_number) {
@@ -102,14 +109,17 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   Frame frame{.dimension = dimension};
   if (reductions.has(Reduction::dimension)) frame = frame_of(drawn, dimension);
   mirrors_.frame = frame;
-  if (reductions.has(Reduction::mirror)) mirrors_ = mirrors_of(drawn, frame);
+  // Springs that are images of one another need not break in one order.
+  if (reductions.has(Reduction::mirror) && drawn.springs.are_plain())
+    mirrors_ = mirrors_of(drawn, frame);
 
   const bool with_pins = !reductions.has(Reduction::pins) && !has_moving_pins(drawn);
   make_network(drawn, dimension, with_pins);
   network_.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
   network_.offers_split = drawn.offers_split;
   // That none turns over is proven by energy, which driving changes.
-  if (network_.uses_constant_stiffness && !with_pins && !drawn.is_driven()) {
+  if (network_.uses_constant_stiffness && !with_pins && !drawn.is_driven() &&
+      network_.general.empty()) {
     if (auto straight = straightened(network_, initial_.q, initial_.v, is_loaded_)) {
       network_ = std::move(*straight);
       is_straightened_ = true;
@@ -196,6 +206,9 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
     if (would_fold) spring.holds = Holds::in_tension;
     add_spring(spring, half, numbers, curves, network);
   });
+  for (int e = 0; e < drawn.springs.size(); ++e) {
+    if (!drawn.springs.law(e).is_plain()) general_.push_back(drawn.springs.number(e));
+  }
 }
 
 // The start of the originals. A coordinate that stays zero is no unknown.

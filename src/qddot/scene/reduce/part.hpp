@@ -51,6 +51,9 @@ class Part {
   // The scene's numbers of its nodes.
   const std::vector<std::size_t>& nodes() const { return nodes_; }
   std::size_t originals() const { return layout_.size(); }
+  // The numbers, in the list that its springs were drawn from, of those that are not plain, in the
+  // order of their phases (Switching).
+  const std::vector<int>& general() const { return general_; }
   bool is_loaded() const { return is_loaded_; }
   // Whether K is constant though springs on a line have rest lengths (see straight.hpp).
   bool is_straightened() const { return is_straightened_; }
@@ -115,6 +118,7 @@ class Part {
   std::vector<double> masses_;    // of the nodes [kg]
   std::vector<Image> images_;     // likewise
   std::vector<Unknowns> layout_;  // of the originals
+  std::vector<int> general_;      // springs
   Network network_;               // until the system is made of it
   std::vector<bool> is_held_;
   std::unique_ptr<System> system_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -36,6 +37,13 @@ class PartSprings {
   int size() const { return static_cast<int>(ends_.size()); }
   const std::array<int, 2>& ends(int e) const { return ends_[static_cast<std::size_t>(e)]; }
   const SpringLaw& law(int e) const { return drawn(e).law; }
+  // The number of spring e in the list.
+  int number(int e) const { return chosen_[static_cast<std::size_t>(e)]; }
+  // Whether all laws are plain.
+  bool are_plain() const {
+    return std::ranges::all_of(
+        chosen_, [&](int e) { return (*all_)[static_cast<std::size_t>(e)].law.is_plain(); });
+  }
   // Begins to load a law that is read some time later. Springs are read out of order by mirrors,
   // and most of the time would go into waiting for memory.
   void prefetch(int e) const { __builtin_prefetch(&drawn(e).law); }

@@ -52,6 +52,8 @@ struct Pieces {
   std::vector<Part> parts{};
   std::vector<Moving> moving{};
   std::vector<DrivenSpring> driven_springs{};
+  // The scene's numbers of the springs that are not plain, by the numbers of their phases.
+  std::vector<std::size_t> general{};
   std::vector<TimeCurve> curves{};  // of the scene
   std::shared_ptr<const System> system{};
   // [J], of springs between pinned nodes that rest, and of the parts' origins.

@@ -52,7 +52,7 @@ class Condenser {
       return false;
     for (const std::size_t e : touching_[node]) {
       const SpringLaw& law = springs_[e].law;
-      if (law.quartic > 0 || law.stiffness == 0 || law.damping > 0) return false;
+      if (law.quartic > 0 || law.stiffness == 0 || law.damping > 0 || !law.is_plain()) return false;
     }
     return true;
   }

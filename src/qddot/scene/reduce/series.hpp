@@ -46,8 +46,8 @@ struct Series {
 };
 
 // All series of the scene that are exact at its start. They go through massless nodes without load
-// on two springs without quartic term. Their two ends are at least l0 apart, and the joints end up
-// between these in their order. `springs` loses the springs in series and gains one for each
+// on two plain springs without quartic term. Their two ends are at least l0 apart, and the joints
+// end up between these in their order. `springs` loses the springs in series and gains one for each
 // series. `is_on_line`: for each node, whether its part stays on a line. Massless nodes that are
 // left cannot be condensed. Like a drawn spring, the new one is stiff if it has more stiffness than
 // `stiff_above`. The ends of a long series feel a soft spring, however stiff each spring is.

@@ -12,7 +12,8 @@ std::size_t low(const Spring& spring) { return std::min(spring.nodes[0], spring.
 std::size_t high(const Spring& spring) { return std::max(spring.nodes[0], spring.nodes[1]); }
 
 bool acts(const Spring& spring) {
-  return spring.law.stiffness > 0 || spring.law.quartic > 0 || spring.law.damping > 0;
+  return spring.law.stiffness > 0 || spring.law.quartic > 0 || spring.law.damping > 0 ||
+         !spring.law.is_plain();
 }
 
 // Springs with the same lower node and the same key may be added.
@@ -23,13 +24,16 @@ auto key(const Spring& spring) {
 // For each spring that is the first of its key, the sum; else a spring without stiffness.
 std::vector<Spring> sums_of(const std::vector<Spring>& springs, const Grouped& by_low) {
   std::vector<Spring> sums = springs;
-  for (Spring& sum : sums) sum.law.stiffness = sum.law.quartic = sum.law.damping = 0;
+  for (Spring& sum : sums) {
+    if (sum.law.is_plain()) sum.law.stiffness = sum.law.quartic = sum.law.damping = 0;
+  }
   std::vector<int> order;
   for (int node = 0; node < by_low.groups(); ++node) {
     order.assign(by_low[node].begin(), by_low[node].end());
     const auto spring = [&](int e) -> const Spring& {
       return springs[static_cast<std::size_t>(e)];
     };
+    std::erase_if(order, [&](int e) { return !spring(e).law.is_plain(); });
     std::ranges::stable_sort(order, {}, [&](int e) { return key(spring(e)); });
     for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
       if (key(spring(order[i])) != key(spring(order[first]))) first = i;

@@ -44,6 +44,7 @@ class Steps {
   void merge();
   void condense();
   void leave_out_static_springs();
+  void note_general(const Part& part);
   std::vector<PartMembers> divide();
   void build(std::vector<PartMembers> parts);
   // The part as its motion is integrated; nothing if it rests in its falling frame.
@@ -133,6 +134,23 @@ void Steps::leave_out_static_springs() {
   }
 }
 
+// Steps keep the order of springs that are not plain, and change none of them.
+void Steps::note_general(const Part& part) {
+  if (part.general().empty()) return;
+  const auto of = [](const std::vector<Spring>& all) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t e = 0; e < all.size(); ++e) {
+      if (!all[e].law.is_plain()) numbers.push_back(e);
+    }
+    return numbers;
+  };
+  const std::vector<std::size_t> now = of(springs()), drawn = of(scene_.springs);
+  for (const int e : part.general()) {
+    const auto place = std::ranges::lower_bound(now, static_cast<std::size_t>(e));
+    pieces_.general.push_back(drawn[static_cast<std::size_t>(place - now.begin())]);
+  }
+}
+
 std::vector<PartMembers> Steps::divide() {
   std::vector<bool> is_condensed(pieces_.nodes.size(), false);
   for (const Series& series : pieces_.series) {
@@ -170,6 +188,7 @@ void Steps::build(std::vector<PartMembers> parts) {
     std::optional<DrawnPart> drawn = moving_part(std::move(members));
     if (!drawn) continue;
     Part& part = pieces_.parts.emplace_back(faithful_part(*drawn));
+    note_general(part);
     systems.push_back(part.take_system());
     pieces_.static_energy += part.energy_of_origin();
     n += part.unknowns();

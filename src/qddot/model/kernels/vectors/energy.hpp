@@ -73,7 +73,7 @@ void energy(const SpringTable& springs, const Positions& positions, double* sums
   }
 }
 
-// SpringLaw::secant(a, b) over a + b; 0 if both are 0.
+// PlainLaw::secant(a, b) over a + b; 0 if both are 0.
 template <int law_vectors>
 [[gnu::always_inline]] inline Lanes secant_by_sum(Lanes a, Lanes b, const Law& law) {
   const Lanes rest_length = load(law.rest_length), s = a - rest_length, t = b - rest_length;

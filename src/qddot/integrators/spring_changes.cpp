@@ -1,0 +1,148 @@
+#include "qddot/integrators/spring_changes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "qddot/model/machine_epsilon.hpp"
+
+namespace qddot {
+namespace {
+
+// Newton's method doubles the digits of each try, and a try beyond the moment costs one more.
+constexpr int most_tries = 40;
+// Times that are as close are one moment.
+constexpr double moment_roundings = 4;
+
+}  // namespace
+
+// A jump in the derivative k of f changes a step across it by h^(k+1) and less.
+bool steps_over_slack(int order, const System& system) {
+  if (!system.switching()) return false;
+  const std::optional<int> slack = system.switching()->order_of_slack();
+  return slack && order > 0 && order <= *slack + 1;
+}
+
+SpringChanges::SpringChanges(const System& system, int order, double rtol)
+    : switching_(system.switching()), rtol_(rtol) {
+  if (!switching_) return;
+  finds_slack_ = switching_->order_of_slack() && !steps_over_slack(order, system);
+  phases_.resize(static_cast<std::size_t>(switching_->phase_count()));
+  is_recent_.resize(phases_.size());
+}
+
+void SpringChanges::clear() {
+  breaks_.clear();
+  count_ = 0;
+}
+
+void SpringChanges::begin(const State& state) {
+  if (!switching_) return;
+  broken_ = state.phases;
+  if (broken_) {
+    phases_ = *broken_;
+  } else {
+    std::ranges::fill(phases_, Phase::by_length);
+  }
+  switching_->set_phases(state, finds_slack_, phases_);
+  std::erase_if(breaks_, [&](const Break& one) { return one.t > state.t; });
+  target_.reset();
+  at_once_ = 0;
+  last_ = state.t;
+  std::ranges::fill(is_recent_, 0);
+  any_recent_ = false;
+}
+
+bool SpringChanges::passes_end(const State& from, const State& to) {
+  const double allowance = any_recent_ ? rtol_ * from.q.lpNorm<Eigen::Infinity>() : 0;
+  passed_ = switching_->first_change(from, to, phases_,
+                                     {is_recent_, allowance, target_ ? target_->number : -1});
+  if (passed_) {
+    before_passed_ = from;
+    return true;
+  }
+  if (any_recent_) forget_recent(to);
+  return false;
+}
+
+void SpringChanges::forget_recent(const State& state) {
+  const double allowance = rtol_ * state.q.lpNorm<Eigen::Infinity>();
+  any_recent_ = false;
+  for (int number = 0; number < std::ssize(is_recent_); ++number) {
+    const Phase phase = phases_[static_cast<std::size_t>(number)];
+    if (!is_recent_[static_cast<std::size_t>(number)]) continue;
+    const Phase next = phase == Phase::slack ? Phase::taut : Phase::slack;
+    const bool is_recent =
+        phase != Phase::broken && switching_->margin(state, number, next).length <= allowance;
+    is_recent_[static_cast<std::size_t>(number)] = is_recent;
+    any_recent_ = any_recent_ || is_recent;
+  }
+}
+
+void SpringChanges::aim() {
+  target_ = passed_;
+  std::swap(before_, before_passed_);
+  tries_ = 0;
+}
+
+SpringChanges::Landing SpringChanges::land(State& state) {
+  const Switching::Change looked_for = *target_;
+  At at(state);
+  at.phases = phases_.data();
+  const Switching::Margin margin = switching_->margin(at, looked_for.number, looked_for.to);
+  const double rounded = moment_roundings * machine_epsilon * std::abs(state.t);
+  const double left = margin.rate != 0 ? -margin.length / margin.rate : 0;
+  const bool is_there = std::abs(margin.length) <= margin.rounding || std::abs(left) <= rounded;
+  if (!is_there && ++tries_ < most_tries) {
+    if (margin.length > 0) {
+      if (!(margin.rate < 0)) {
+        target_.reset();
+        return Landing::missed;
+      }
+      before_ = state;
+      target_->t = state.t + left;
+      return Landing::closer;
+    }
+    // The next try had better end before the moment than beyond it: it is then kept.
+    const double whole = state.t - before_.t;
+    const double back = margin.rate < 0 ? std::min(1.5 * -left, whole / 2) : whole / 2;
+    if (whole - back > rounded) {
+      target_->t = state.t - back;
+      return Landing::beyond;
+    }
+  }
+  target_.reset();
+  change(looked_for, state);
+  due_.clear();
+  switching_->add_due_changes(at, phases_, due_);
+  for (const Switching::Change& also : due_) {
+    const bool is_broken = phases_[static_cast<std::size_t>(also.number)] == Phase::broken;
+    if (also.number != looked_for.number && !is_broken) change(also, state);
+  }
+  if (!(state.t > last_ + rounded)) {
+    if (++at_once_ > 4 * switching_->phase_count() + 16) return Landing::endless;
+  } else {
+    at_once_ = 0;
+    last_ = state.t;
+  }
+  return Landing::changed;
+}
+
+void SpringChanges::change(const Switching::Change& change, State& state) {
+  if (change.to == Phase::broken) {
+    At at(state);
+    at.phases = phases_.data();
+    const double energy = switching_->energy_of(at, change.number);
+    breaks_.push_back({state.t, change.number, switching_->strain_of(at, change.number), energy});
+    state.work.released += energy;
+    std::vector<Phase> broken =
+        broken_ ? *broken_ : std::vector<Phase>(phases_.size(), Phase::by_length);
+    broken[static_cast<std::size_t>(change.number)] = Phase::broken;
+    broken_ = std::make_shared<const std::vector<Phase>>(std::move(broken));
+  }
+  phases_[static_cast<std::size_t>(change.number)] = change.to;
+  is_recent_[static_cast<std::size_t>(change.number)] = any_recent_ = true;
+  ++count_;
+  state.phases = broken_;
+}
+
+}  // namespace qddot

@@ -1,0 +1,210 @@
+// Cables that go slack and springs that break, against closed forms: the order of every method in
+// positions, velocities and the moments; and what happens at moments that are hard.
+#include <boost/test/unit_test.hpp>
+
+#include "qddot/model/capabilities.hpp"
+#include "tests/integrators/motions.hpp"
+
+BOOST_AUTO_TEST_SUITE(switching)
+
+using namespace qddot;
+
+namespace {
+
+constexpr double mass = 2, stiffness = 300, rest_length = 1, gravity = 9.81;
+
+// A mass that falls on a cable from 0.4 m below its pin, bounces and falls again, on a line.
+// Closed form: free fall to l0; then l = l_e + a cos + b sin about the place of balance l_e, until
+// it is l0 again; it leaves with the speed of its fall, as energy has it.
+struct Bounce {
+  double start = 0.4;
+
+  double omega() const { return std::sqrt(stiffness / mass); }
+  double speed() const { return std::sqrt(2 * gravity * (rest_length - start)); }
+  double falling() const { return speed() / gravity; }
+  double balance() const { return rest_length + mass * gravity / stiffness; }
+  // The time on the cable: from the phase of l0 to the same length on the way up.
+  double bouncing() const {
+    const double below = rest_length - balance();
+    return 2 / omega() * (M_PI - std::atan2(speed() / omega(), -below));
+  }
+  double period() const { return 2 * falling() + bouncing(); }
+  // Length and rate at t [s].
+  std::pair<double, double> at(double t) const {
+    t = std::fmod(t, period());
+    if (t > falling() + bouncing()) {
+      const double left = period() - t;
+      return {start + gravity / 2 * left * left, -gravity * left};
+    }
+    if (t < falling()) return {start + gravity / 2 * t * t, gravity * t};
+    const double phase = omega() * (t - falling()), below = rest_length - balance();
+    return {balance() + below * std::cos(phase) + speed() / omega() * std::sin(phase),
+            -below * omega() * std::sin(phase) + speed() * std::cos(phase)};
+  }
+  Problem problem() const {
+    Network network{.dimension = 1,
+                    .gravity = Eigen::Vector3d(gravity, 0, 0),
+                    .node_mass = Vec::Constant(1, mass)};
+    network.general = {
+        {.i = 0,
+         .j = -1,
+         .point = Eigen::Vector3d::Zero(),
+         .law = {.stiffness = stiffness, .rest_length = rest_length, .pulls_only = true}}};
+    return {network, {0, Vec::Constant(1, start), Vec::Zero(1)}};
+  }
+};
+
+// Two masses below each other on two springs; the lower one breaks on the first way down. Closed
+// form: two modes until l_2 = l_c; then one mass on its spring, and one in free fall.
+struct Series {
+  double breaks_at = 0.018, k = 900, m = 1;
+
+  // The modes about the balance, of x1, x2 with M = m and K = -k [[2, -1], [-1, 1]].
+  double square(int mode) const {
+    return k / m * (mode == 0 ? 3 - std::sqrt(5) : 3 + std::sqrt(5)) / 2;
+  }
+  Eigen::Vector2d shape(int mode) const {
+    // (2 k - w^2 m) u1 = k u2.
+    return Eigen::Vector2d(1, 2 - square(mode) * m / k).normalized();
+  }
+  Eigen::Vector2d balance() const {
+    const double e2 = m * gravity / k, e1 = 2 * m * gravity / k;
+    return {1 + e1, 2 + e1 + e2};
+  }
+  // From rest at the rest lengths.
+  std::pair<Eigen::Vector2d, Eigen::Vector2d> whole(double t) const {
+    Eigen::Vector2d x = balance(), v = Eigen::Vector2d::Zero();
+    const Eigen::Vector2d from = Eigen::Vector2d(1, 2) - balance();
+    for (const int mode : {0, 1}) {
+      const double w = std::sqrt(square(mode)), a = shape(mode).dot(from);
+      x += a * std::cos(w * t) * shape(mode);
+      v -= a * w * std::sin(w * t) * shape(mode);
+    }
+    return {x, v};
+  }
+  double moment() const {
+    const auto strain = [&](double t) {
+      const auto [x, v] = whole(t);
+      return x[1] - x[0] - 1 - breaks_at;
+    };
+    double low = 0, high = 0;
+    while (strain(high) < 0) high += 1e-3;
+    low = high - 1e-3;
+    for (int i = 0; i < 100; ++i) (strain((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+    return high;
+  }
+  std::pair<Eigen::Vector2d, Eigen::Vector2d> at(double t) const {
+    const double t_break = moment();
+    if (t <= t_break) return whole(t);
+    const auto [x, v] = whole(t_break);
+    const double s = t - t_break, w = std::sqrt(k / m), e = 1 + m * gravity / k, a = x[0] - e;
+    return {{e + a * std::cos(w * s) + v[0] / w * std::sin(w * s),
+             x[1] + v[1] * s + gravity / 2 * s * s},
+            {-a * w * std::sin(w * s) + v[0] * std::cos(w * s), v[1] + gravity * s}};
+  }
+  Problem problem() const {
+    Network network{.dimension = 1,
+                    .gravity = Eigen::Vector3d(gravity, 0, 0),
+                    .node_mass = Vec::Constant(2, m)};
+    network.anchors = {{0, Eigen::Vector3d::Zero(), {.stiffness = k, .rest_length = 1}}};
+    network.general = {{.i = 0,
+                        .j = 1,
+                        .point = Eigen::Vector3d::Zero(),
+                        .law = {.stiffness = k, .rest_length = 1, .breaks_at = breaks_at}}};
+    return {network, {0, Eigen::Vector2d(1, 2), Vec::Zero(2)}};
+  }
+};
+
+bool runs_here(const Method& m) {
+  return !m.asks(Need::constant_stiffness) && !m.asks(Need::split_forces);
+}
+std::vector<Method> of_fixed_steps() {
+  return methods_where([](const Method& m) { return runs_here(m) && m.knob == Knob::step_size; });
+}
+std::vector<Method> of_chosen_steps() {
+  return methods_where([](const Method& m) { return runs_here(m) && m.knob == Knob::rtol; });
+}
+
+// The slope of errors over the last steps before rounding shows. They scatter where a moment falls
+// elsewhere in its step, so that a line is fitted through many.
+double observed_order(const Method& method, const std::function<double(double)>& error_of) {
+  const double first = method.order == 1   ? 800
+                       : method.order == 2 ? 150
+                       : method.order < 6  ? 50
+                                           : 10;
+  const double most = method.order == 1 ? 30'000 : 4'000;
+  const double factor = method.order >= 6 ? 1.15 : 1.3;
+  std::vector<double> h, errors;
+  for (double steps = first; steps < most; steps *= factor) {
+    const double error = error_of(std::round(steps));
+    if (error < 2e-12) break;
+    h.push_back(-std::log(std::round(steps)));
+    errors.push_back(std::log(error));
+  }
+  BOOST_TEST_REQUIRE(errors.size() >= 4u);
+  const auto used = std::min<std::size_t>(errors.size(), 9);
+  const Vec x = Eigen::Map<const Vec>(h.data() + h.size() - used, std::ssize(h) > 0 ? used : 0);
+  const Vec y = Eigen::Map<const Vec>(errors.data() + errors.size() - used, used);
+  return slope(x, y);
+}
+
+}  // namespace
+
+BOOST_DATA_TEST_CASE(a_bounce_on_a_cable_keeps_the_order, of_fixed_steps(), method) {
+  const Bounce bounce;
+  const Problem p = bounce.problem();
+  const double until = 2.4 * bounce.period();
+  const auto [l, l_rate] = bounce.at(until);
+  const double order = observed_order(method, [&](double steps) {
+    const Run r = run(method, p, until, {.step_size = until / steps});
+    BOOST_TEST_REQUIRE(r.summary.message == "");
+    return std::abs(r.state.q[0] - l) + std::abs(r.state.v[0] - l_rate) / 10;
+  });
+  BOOST_TEST_MESSAGE(method.name << " " << order);
+  // Errors of different moments may cancel in a step or two.
+  BOOST_TEST(order > method.order - (method.order > 6 ? 1.2 : 0.5));
+}
+
+BOOST_DATA_TEST_CASE(a_spring_breaks_at_its_moment, of_fixed_steps(), method) {
+  const Series series;
+  const Problem p = series.problem();
+  const double until = 2 * series.moment();
+  const auto [x, v] = series.at(until);
+  double last_moment = 0;
+  const double order = observed_order(method, [&](double steps) {
+    const Run r = run(method, p, until, {.step_size = until / steps});
+    BOOST_TEST_REQUIRE(r.summary.message == "");
+    BOOST_TEST_REQUIRE(r.summary.breaks.size() == 1u);
+    last_moment = std::abs(r.summary.breaks[0].t - series.moment());
+    return (r.state.q - x).norm() + (r.state.v - v).norm() / 30 + last_moment;
+  });
+  BOOST_TEST_MESSAGE(method.name << " " << order << " " << last_moment);
+  BOOST_TEST(order > method.order - (method.order > 6 ? 1.2 : 0.5));
+}
+
+BOOST_DATA_TEST_CASE(methods_that_choose_steps_land_on_both, of_chosen_steps(), method) {
+  const Bounce bounce;
+  const Series series;
+  const double t_bounce = 2.4 * bounce.period(), t_series = 2 * series.moment();
+  for (const double rtol : {1e-5, 1e-8}) {
+    // As in the suite `order`: multistep methods err by up to 1100 tolerances.
+    const double most = (method.varies_order() ? 2000 : 200) * rtol;
+    const Run bounced = run(method, bounce.problem(), t_bounce, {.rtol = rtol});
+    BOOST_TEST_REQUIRE(bounced.summary.message == "");
+    // Down twice and up twice, and once more down; methods of order 2 step over them.
+    BOOST_TEST(bounced.summary.phase_changes == (method.order == 2 ? 0 : 5));
+    BOOST_TEST(std::abs(bounced.state.q[0] - bounce.at(t_bounce).first) < most);
+    const Run broken = run(method, series.problem(), t_series, {.rtol = rtol});
+    BOOST_TEST_REQUIRE(broken.summary.message == "");
+    BOOST_TEST_REQUIRE(broken.summary.breaks.size() == 1u);
+    BOOST_TEST(std::abs(broken.summary.breaks[0].t - series.moment()) < most);
+    BOOST_TEST((broken.state.q - series.at(t_series).first).norm() < most);
+    BOOST_TEST_MESSAGE(method.name << " " << rtol << " "
+                                   << std::abs(bounced.state.q[0] - bounce.at(t_bounce).first)
+                                   << " " << (broken.state.q - series.at(t_series).first).norm()
+                                   << " steps " << bounced.summary.counts.steps << " "
+                                   << broken.summary.counts.steps);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
