@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -206,15 +208,31 @@ nlohmann::json to_json(const Reference& r) {
       {"v", list(r.end.v)}};
   if (r.end.work.dissipated != 0) json["dissipated"] = r.end.work.dissipated;  // of damped scenes
   if (r.end.work.driven != 0) json["driven"] = r.end.work.driven;              // of driven ones
+  if (r.end.phases) {
+    // The numbers of broken springs (Switching).
+    nlohmann::json broken = nlohmann::json::array();
+    for (std::size_t k = 0; k < r.end.phases->size(); ++k) {
+      if ((*r.end.phases)[k] == Phase::broken) broken.push_back(k);
+    }
+    json["phases"] = r.end.phases->size();
+    json["broken"] = broken;
+    json["released"] = r.end.work.released;
+  }
   return json;
 }
 
 Reference reference_from_json(const nlohmann::json& json) {
   Reference reference = reference_without_end(json);
-  reference.end = {json.at("t"),
-                   vector(json.at("q")),
-                   vector(json.at("v")),
-                   {number(json, "dissipated", 0), number(json, "driven", 0)}};
+  reference.end = {
+      json.at("t"),
+      vector(json.at("q")),
+      vector(json.at("v")),
+      {number(json, "dissipated", 0), number(json, "driven", 0), number(json, "released", 0)}};
+  if (json.contains("broken")) {
+    std::vector<Phase> phases(json.at("phases"), Phase::by_length);
+    for (const std::size_t k : json.at("broken")) phases.at(k) = Phase::broken;
+    reference.end.phases = std::make_shared<const std::vector<Phase>>(std::move(phases));
+  }
   reference.energy = json.at("energy");
   reference.scales = scales_from_json(json.at("scales"));
   reference.certified = {json.at("certified_position"), json.at("certified_velocity"),

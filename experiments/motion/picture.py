@@ -119,14 +119,26 @@ def frame_at(run, time):
     return max(0, int(np.searchsorted(run.times, time * (1 + 1e-9), side="right")) - 1)
 
 
+def torn_at(order, springs, is_whole):
+    """The places in a line of nodes, in this order, before which all springs between two neighbours
+    are broken."""
+    kinds = (springs[which].tolist() for which in (is_whole, ~is_whole))
+    whole, broken = (set(map(frozenset, kind)) for kind in kinds)
+    pairs = enumerate(zip(order.tolist(), order[1:].tolist()), 1)
+    return [place for place, pair in pairs if frozenset(pair) in broken - whole]
+
+
 def outline(drawn, run, frame, seen):
-    """The lines of a picture of one frame: each spring, or of a line of nodes their displacements."""
+    """The lines of a picture of one frame: each spring that is not broken, or of a line of nodes
+    their displacements."""
+    springs, is_whole = run.motion.springs, run.broken_from > frame
     if drawn.dimension == 1:
         start, now = run.positions[0, :, 0], run.positions[frame, :, 0]
         order = np.argsort(start)
-        return [np.stack([start, now - start], 1)[order]]
-    springs = run.motion.springs
-    return seen(run.positions[frame])[springs[:: -(-len(springs) // MOST_SPRINGS) or 1]]
+        line = np.stack([start, now - start], 1)[order]
+        return np.split(line, torn_at(order, springs, is_whole))
+    every = -(-len(springs) // MOST_SPRINGS) or 1
+    return seen(run.positions[frame])[springs[::every][is_whole[::every]]]
 
 
 def draw_outlines(drawn, runs):

@@ -96,6 +96,13 @@ class Run:
         """The positions (frames, nodes, 3) [m]."""
         return self.motion.positions(range(len(self.times)))
 
+    @cached_property
+    def broken_from(self):
+        """The first frame in which each spring is broken, or the number of frames."""
+        frames = range(len(self.times))
+        found = self.motion.broken_from(frames)
+        return np.full(len(self.motion.springs), len(frames)) if found is None else found
+
     @property
     def times(self):
         """The times [s] of the frames."""

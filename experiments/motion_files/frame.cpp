@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "experiments/motion_files/on_all_cores.hpp"
 
@@ -102,6 +103,11 @@ Framing::Framing(const Scene& start, const Model& scene, const Fields& wanted)
     springs_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
   first_line_ = cells.points.size();
   cells_ = cells.count();
+  const std::vector<std::size_t>& general = scene.general_springs();
+  for (std::size_t k = 0; k < general.size(); ++k) {
+    if (start.springs[general[k]].law.can_break())
+      breakable_.push_back({k, general[k], lengths_[general[k]]});
+  }
 }
 
 const Frame* Framing::of(const State& state, const State* reference) {
@@ -115,6 +121,7 @@ const Frame* Framing::of(const State& state, const State* reference) {
   if (wanted_.kinetic_energy) frame_.kinetic_energies.resize(nodes);
   if (wanted_.strain) frame_.strains.resize(cells_, 0);
   frame_.distances.resize(reference ? nodes : 0);
+  if (wanted_.strain) leave_out_broken(state);
   std::atomic<std::uint32_t> overflows = 0;
   on_all_cores(slabs(nodes) + slabs(springs), nodes + springs, [&](std::size_t k) {
     const bool is_of_nodes = k < slabs(nodes);
@@ -122,6 +129,7 @@ const Frame* Framing::of(const State& state, const State* reference) {
     overflows |= is_of_nodes ? take_nodes(first, std::min(nodes, first + slab))
                              : take_strains(first, std::min(springs, first + slab));
   });
+  if (wanted_.strain) mark_broken(state);
   has_ended_ = !std::isfinite(state.t) || overflows >> 31 != 0;
   return has_ended_ ? nullptr : &frame_;
 }
@@ -166,6 +174,18 @@ std::uint32_t Framing::take_strains(std::size_t first, std::size_t end) {
         const double length = lengths_[i], strain = (std::sqrt(square) - length) / length;
         return short_form(length > 0 ? strain : 0, found);
       });
+}
+
+void Framing::leave_out_broken(const State& state) {
+  for (const Breakable& one : breakable_)
+    lengths_[one.spring] = one.is_broken(state) ? 0 : one.length;
+}
+
+void Framing::mark_broken(const State& state) {
+  for (const Breakable& one : breakable_) {
+    if (one.is_broken(state))
+      frame_.strains[first_line_ + one.spring] = std::numeric_limits<float>::quiet_NaN();
+  }
 }
 
 }  // namespace qddot::motion_files

@@ -33,7 +33,8 @@ struct Frame {
   std::vector<float> velocities;        // [m/s]
   std::vector<float> kinetic_energies;  // [J]
   std::vector<float> distances;         // [m], to the reference
-  std::vector<float> strains;           // of all cells (see cells.hpp), zero but for springs
+  // Of all cells, zero but for springs; NaN for springs that are broken.
+  std::vector<float> strains;
 };
 
 // Makes the frames of one scene.
@@ -43,7 +44,8 @@ class Framing {
   Framing(const Scene& start, const Model& scene, const Fields& wanted);
 
   // The frame of the state, with distances if there is a reference; the next call overwrites it.
-  // nullptr if a number is not finite or beyond 32-bit floats, and from then on.
+  // nullptr if a number is not finite or beyond 32-bit floats, and from then on. The strain of a
+  // broken spring does not count.
   const Frame* of(const State& state, const State* reference);
   const Fields& wanted() const { return wanted_; }
   // All nodes of the last frame.
@@ -54,6 +56,21 @@ class Framing {
   // result is set if a number is not finite or beyond 32-bit floats.
   std::uint32_t take_nodes(std::size_t first, std::size_t end);
   std::uint32_t take_strains(std::size_t first, std::size_t end);
+  // Before take_strains: gives broken springs the length zero, so that their strain cannot
+  // overflow.
+  void leave_out_broken(const State& state);
+  // After it: their strain is NaN.
+  void mark_broken(const State& state);
+
+  // A spring that can break: the number of its phase, that of the spring and the length of strains.
+  struct Breakable {
+    std::size_t phase, spring;
+    double length;
+
+    bool is_broken(const State& state) const {
+      return state.phases && (*state.phases)[phase] == Phase::broken;
+    }
+  };
 
   const Model& scene_;
   Fields wanted_;
@@ -61,6 +78,7 @@ class Framing {
   std::vector<std::array<std::uint32_t, 2>> springs_;
   std::vector<Node> nodes_, exact_nodes_;
   std::vector<double> lengths_;
+  std::vector<Breakable> breakable_;
   std::size_t first_line_, cells_;
   Frame frame_;
   bool has_ended_ = false;

@@ -14,7 +14,7 @@ namespace qddot::motion_files {
 struct Fields {
   bool velocity = true;        // [m/s], of each node
   bool kinetic_energy = true;  // [J], of each node
-  bool strain = true;          // of each spring: (l - l0) / l0, see docs/motions.md
+  bool strain = true;  // of each spring: (l - l0) / l0, or NaN once it is broken; docs/motions.md
 };
 constexpr Fields no_fields{.velocity = false, .kinetic_energy = false, .strain = false};
 

@@ -108,12 +108,13 @@ int usual_number_of_frames(std::size_t nodes) {
 
 namespace {
 
-// Damped scenes have the energy that damping has taken, too, and driven ones what driving has
-// given.
+// Damped scenes have the energy that damping has taken, too, driven ones what driving has given,
+// and those whose springs may change phases what broken ones held.
 std::vector<std::string> energy_columns(const Model& scene) {
   std::vector<std::string> names = {"file", "t", "kinetic", "potential", "total"};
   if (scene.system().damping()) names.push_back("dissipated");
   if (scene.system().driving()) names.push_back("driven");
+  if (scene.system().switching()) names.push_back("released");
   return names;
 }
 
@@ -206,15 +207,12 @@ KeptMotions::Written KeptMotions::write(const std::string& name, const std::vect
     const double kinetic = scene_.kinetic(state), potential = scene_.potential(state);
     const std::string motion = place + file_name;
     const double total = kinetic + potential;
-    const bool is_damped = scene_.system().damping(), is_driven = scene_.system().driving();
-    const double dissipated = state.work.dissipated, driven = scene_.driven(state);
-    if (is_damped && is_driven) {
-      energy_.row(motion, state.t, kinetic, potential, total, dissipated, driven);
-    } else if (is_damped || is_driven) {
-      energy_.row(motion, state.t, kinetic, potential, total, is_damped ? dissipated : driven);
-    } else {
-      energy_.row(motion, state.t, kinetic, potential, total);
-    }
+    energy_.field(motion);
+    for (const double value : {state.t, kinetic, potential, total}) energy_.field(value);
+    if (scene_.system().damping()) energy_.field(state.work.dissipated);
+    if (scene_.system().driving()) energy_.field(scene_.driven(state));
+    if (scene_.system().switching()) energy_.field(scene_.released(state));
+    energy_.end_row();
   }
   file->complete(origin_);
   file->commit();

@@ -16,8 +16,9 @@ PHASES |= {name: f"seconds_{name}" for name in ("force", "stiffness", "factoriza
 CACHE = 1 << 26
 # The columns of the energies and their significant digits in a page: of the total its small changes are shown.
 ENERGIES = {"t": 7, "kinetic": 7, "potential": 7, "total": 17}
-# Damped scenes have the energy that damping has taken, too, and driven ones what driving has given.
-WORK = {"dissipated": 17, "driven": 17}
+# Damped scenes have the energy that damping has taken, too, driven ones what driving has given, and
+# those whose springs may break what they held.
+WORK = {"dissipated": 17, "driven": 17, "released": 17}
 
 
 def read_motion_rows(directory):
@@ -77,15 +78,34 @@ class MotionFile:
         name = "PointData/velocity"
         return self.rows(name, frames) if name in self.file["VTKHDF"] else None
 
+    def broken_from(self, frames):
+        """For each spring, the first place in `frames` (ascending numbers) at which it is broken,
+        or their number where it never is; None where no spring breaks."""
+        last = self.strains(frames[-1:])
+        if last is None or not np.isnan(last).any():
+            return None
+        is_broken = np.isnan(self.strains(frames))
+        return np.where(is_broken[-1], is_broken.argmax(axis=0), len(frames))
+
+    def strains(self, frames):
+        """Strains (frames, springs), NaN where a spring is broken; None where the file has none."""
+        name = "CellData/strain"
+        if name not in self.file["VTKHDF"]:
+            return None
+        strains = self.rows(name, frames)  # of vertices, springs and faces
+        first = strains.shape[1] - len(self.springs) - len(self.faces)
+        return strains[:, first : first + len(self.springs)]
+
     def rows(self, name, frames):
-        """A data set's rows of these frames, by frame and node. Raises BadInput where they are
-        damaged."""
+        """A data set's rows of these frames, by frame and node or cell. Raises BadInput where they
+        are damaged."""
         data = self.file["VTKHDF"][name]
+        count = len(data) // len(self.times)
         try:
-            parts = [data[frame * self.nodes : (frame + 1) * self.nodes] for frame in frames]
+            parts = [data[frame * count : (frame + 1) * count] for frame in frames]
         except OSError as error:
             raise BadInput(f"{self.name} is no whole HDF5 file.") from error
-        return np.stack(parts) if parts else np.empty((0, self.nodes, *data.shape[1:]))
+        return np.stack(parts) if parts else np.empty((0, count, *data.shape[1:]))
 
 
 def groups_of(root, name, size, nodes):
@@ -121,9 +141,12 @@ def open_motion(directory, name):
             data = root.get(f"PointData/{field}")
             if data is not None and data.shape != shape:
                 raise BadInput(f"its {field} does not fit its points")
-        cells = (
-            groups_of(root, name, size, nodes) for name, size in (("Lines", 2), ("Polygons", 3))
-        )
+        kinds = (("Vertices", 1), ("Lines", 2), ("Polygons", 3))
+        vertices, *cells = (groups_of(root, kind, size, nodes) for kind, size in kinds)
+        strain = root.get("CellData/strain")
+        count = sum(map(len, (vertices, *cells)))
+        if strain is not None and strain.shape != (count * len(times),):
+            raise BadInput("its strain does not fit its springs")
         return MotionFile(name, file, times, nodes, *cells)
     except (BadInput, OSError, LookupError, ValueError, TypeError, AttributeError) as error:
         if file:

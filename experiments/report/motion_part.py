@@ -128,6 +128,10 @@ class Encoder:
         blobs = {f"p{run}": positions_blob(steps)}
         if distances is not None:
             blobs[f"d{run}"] = distances_blob(distances / self.unit)
+        broken_from = motion.broken_from(frames)
+        if broken_from is not None:
+            entry["broken_from"] = f"b{run}"
+            blobs[f"b{run}"] = index_blob(broken_from)
         return EncodedRun(entry, blobs)
 
 
@@ -148,7 +152,7 @@ def told_energy(energy, times):
     kinetic one, and without times that are those of the frames."""
     if energy is None:
         return None
-    columns = ("kinetic", "total", "dissipated", "driven")
+    columns = ("kinetic", "total", "dissipated", "driven", "released")
     told = {name: energy[name] for name in columns if name in energy}
     is_at_frames = [float(f"{time:.7g}") for time in times] == energy["t"]
     return told if is_at_frames else told | {"t": energy["t"]}
@@ -196,7 +200,7 @@ def pack(study, origin, opened, energies, notes, room):
         # The relative distance below which the reference itself may be off.
         "known_to": origin.get("reference_error"),
         # Missing motions are named beside the others.
-        "notes": notes + what_was_left_out(opened, entries),
+        "notes": notes + what_was_left_out(opened, entries) + what_breaks(entries),
         "runs": entries,
     }
     return part, blobs, []
@@ -216,6 +220,12 @@ def what_was_left_out(opened, entries):
     return [
         f"To stay small, this page holds {' and '.join(parts)}; the files in motions/ hold all."
     ]
+
+
+def what_breaks(entries):
+    """A sentence on springs that break; none where the page has none."""
+    is_any = any("broken_from" in entry for entry in entries)
+    return ["Broken springs are not drawn."] if is_any else []
 
 
 def motion_part(study, room):

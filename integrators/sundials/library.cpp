@@ -46,7 +46,7 @@ void Library::load(const State& state) {
   Halves halves(y());
   halves.q = state.q;
   halves.v = state.v;
-  if (has_work(y())) work(y()) = state.work.taken();
+  if (has_work(y())) work(y()) = state.work.dissipated - state.work.driven;
   if (has_matrix()) matrix().begin_run();
 }
 

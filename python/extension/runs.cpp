@@ -12,7 +12,7 @@ namespace {
 using py::arg;
 
 // The caller's arrays that a run fills at the observed times: positions and velocities (2, times,
-// nodes, dimension), energies (5, times).
+// nodes, dimension), energies (6, times).
 class Frames {
  public:
   Frames(const Model& model, std::vector<double> times, py::array_t<double>& motion,
@@ -43,6 +43,7 @@ class Frames {
       energies_[seen_ + 2 * times_.size()] = kinetic + potential;
       energies_[seen_ + 3 * times_.size()] = model_.dissipated(state);
       energies_[seen_ + 4 * times_.size()] = model_.driven(state);
+      energies_[seen_ + 5 * times_.size()] = model_.released(state);
     }
     ++seen_;
   }
@@ -62,15 +63,29 @@ py::dict end_of(const Model& model, const State& state) {
                   arg("v") = array_of(nodes, &Node::velocity, d));
 }
 
-// The kinetic energy, the potential energy, their sum, what damping has taken and what driving has
-// given [J]; None for a system without V.
+// The kinetic energy, the potential energy, their sum, what damping has taken, what driving has
+// given and what springs held when they broke [J]; None for a system without V.
 py::object energies_of(const Model& model, const State& state) {
   if (!model.system().has_potential()) return py::none();
   const double kinetic = model.kinetic(state);
   double potential = 0;
   inside_python([&] { potential = model.potential(state); });
   return py::make_tuple(kinetic, potential, kinetic + potential, model.dissipated(state),
-                        model.driven(state));
+                        model.driven(state), model.released(state));
+}
+
+// The springs that broke, by the scene's numbers; `errors` of their times [s] may be empty.
+py::list breaks_of(const Model& model, const Summary& summary, const std::vector<double>& errors) {
+  py::list all;
+  for (std::size_t k = 0; k < summary.breaks.size(); ++k) {
+    const Break& one = summary.breaks[k];
+    const std::vector<std::size_t>& springs = model.general_springs();
+    const auto number = static_cast<std::size_t>(one.number);
+    all.append(py::make_tuple(one.t, number < springs.size() ? springs[number] : number,
+                              one.strain, one.energy,
+                              errors.empty() ? py::object(py::none()) : py::float_(errors[k])));
+  }
+  return all;
 }
 
 // A run of a method, which fills the arrays of Frames.
@@ -95,6 +110,7 @@ py::dict run(const HeldModel& held, const std::string& name, const py::dict& giv
                   arg("seen") = frames.seen(),
                   arg("end") = end_of(*held.model, simulation->state()),
                   arg("energies") = energies_of(*held.model, simulation->state()),
+                  arg("breaks") = breaks_of(*held.model, summary, {}),
                   arg("growth") = in_python(growth_warning(method(name), summary)));
 }
 
@@ -119,6 +135,7 @@ py::dict answer(const HeldModel& held, double until, double accuracy, const std:
   record["looks"] = found.looks;
   record["end"] = end_of(*held.model, found.end);
   record["energies"] = energies_of(*held.model, found.end);
+  record["breaks"] = breaks_of(*held.model, found.summary, found.break_errors);
   return record;
 }
 

@@ -40,7 +40,7 @@ from qddot._methods import Method, method, methods
 from qddot._qddot import InvalidInput, NoReference, __version__
 from qddot._reference import Errors, ErrorsAlong, Reference, reference
 from qddot._scene import Explanation, Scene
-from qddot._solve import Counts, Energy, RunFailed, Solution, State, solve
+from qddot._solve import Break, Counts, Energy, RunFailed, Solution, State, solve
 from qddot._studies import (
     Convergence,
     EnergyTrend,
@@ -56,6 +56,7 @@ from qddot._work_precision import Point, WorkPrecision, work_precision
 __all__ = [
     "Advice",
     "Advices",
+    "Break",
     "Candidate",
     "Convergence",
     "Counts",

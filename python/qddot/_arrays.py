@@ -35,6 +35,15 @@ def whole_numbers(value: ArrayLike, name: str) -> NDArray[np.int64]:
     return np.ascontiguousarray(array, dtype=np.int64)
 
 
+def flags(value: ArrayLike, name: str) -> Floats:
+    """True and False as 1 and 0; a scalar becomes an array of one."""
+    given = np.asarray(value)
+    if given.dtype != bool:
+        raise ValueError(f"{name}: its entries are {given.dtype}; allowed are True and False")
+    require_unmasked(value, name)
+    return np.ascontiguousarray(given, dtype=np.float64).reshape(-1)
+
+
 def require_unmasked(value: ArrayLike, name: str) -> None:
     """Raises ValueError for a masked array, whose mask would be lost."""
     if np.any(getattr(value, "mask", False)):

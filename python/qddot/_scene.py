@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qddot import _qddot
-from qddot._arrays import Floats, floats, frozen, number, whole_numbers
+from qddot._arrays import Floats, flags, floats, frozen, number, whole_numbers
 from qddot._curve import Curve, Curves, curve_of
 from qddot._curve import held as held_curves
 from qddot._names import hint, knows_its_arguments
@@ -172,7 +172,7 @@ class Scene:
                 None if damping is None else floats(damping, "damping", one=True),
                 None if cubic is None else floats(cubic, "cubic", one=True),
                 None if breaks_at is None else floats(breaks_at, "breaks_at", one=True),
-                None if pulls_only is None else floats(pulls_only, "pulls_only", one=True),
+                None if pulls_only is None else flags(pulls_only, "pulls_only"),
                 number(air_damping, "air_damping"),
                 str(name),
                 None if until is None else number(until, "until"),

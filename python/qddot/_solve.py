@@ -51,14 +51,27 @@ class Counts:
 @dataclass(frozen=True, eq=False)
 class Energy:
     """Energies [J] at the times of a solution. total is that of the motion; an exact one keeps it
-    together with what damping has taken and supports and loads have given: total + dissipated -
-    driven."""
+    together with what damping has taken, supports and loads have given, and springs held when they
+    broke: total + dissipated - driven + released."""
 
     kinetic: Floats
     potential: Floats
     total: Floats
     dissipated: Floats
     driven: Floats
+    released: Floats
+
+
+@dataclass(frozen=True)
+class Break:
+    """A spring that broke: its number in the scene, the time [s], the strain (l - l0)/l0 there, the
+    energy that it held [J], and a bound of the time's error [s] if an accuracy was asked for."""
+
+    t: float
+    spring: int
+    strain: float
+    energy: float
+    t_error: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +95,8 @@ class Solution:
     had lost at the end, over the energy that the motion can turn into speed. If an accuracy was
     asked for: error_estimate bounds the relative error, error_estimate_kind says how the bound was
     made ("compared", "refined", "conserved", "rounding", "none"), is_reached says whether it is at
-    most the accuracy, and the motion is unknown from the time horizon [s] on.
+    most the accuracy, and the motion is unknown from the time horizon [s] on. breaks lists the
+    springs that broke, in time.
     """
 
     method: str
@@ -100,6 +114,7 @@ class Solution:
     seconds: float
     energy_growth: float
     energy_loss: float
+    breaks: tuple[Break, ...] = ()
     accuracy: float | None = None
     is_reached: bool | None = None
     error_estimate: float | None = None
@@ -282,7 +297,7 @@ def _run(
     model = start.model(chosen)
     looks = [] if times is None else times
     motion = np.empty((2, len(looks), model.nodes, model.dimension))
-    energies = np.empty((5, len(looks))) if model.has_potential else None
+    energies = np.empty((6, len(looks))) if model.has_potential else None
     record = _qddot.run(model, chosen.name, options, end, looks, motion, energies, seconds, threads)
     if record["growth"] and record["summary"]["outcome"] == "reached_end":
         warnings.warn(record["growth"], RuntimeWarning, stacklevel=4)
@@ -369,6 +384,7 @@ def _solution(
         counts=Counts(**summary["counts"]),
         energy_growth=summary["energy_growth"],
         energy_loss=summary["energy_loss"],
+        breaks=tuple(Break(*one) for one in record.get("breaks", ())),
         **about,
     )
 

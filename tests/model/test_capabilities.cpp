@@ -226,6 +226,7 @@ BOOST_AUTO_TEST_CASE(blocks_offer_together_what_all_of_them_offer_and_exceptions
                             .kinks = a.kinks || b.kinks,
                             .damping = a.damping || b.damping,
                             .driving = a.driving || b.driving,
+                            .switching = a.switching || b.switching,
                             .blocks = true,
                             .split = false};
       BOOST_TEST((offers_of(both) == expected));

@@ -9,7 +9,7 @@ import numpy as np
 from motion_case import (
     DIVERGING, FLOAT, SHORT, Motions, assert_close, mixed_cells, run_words, xdmf_frames,
 )  # fmt: skip
-from programs import node, read, scene, sidecar, spring, write
+from programs import node, read, rows_of, scene, sidecar, spring, write
 
 FIELDS = ["kinetic_energy", "velocity"]
 KINDS = {"Vertices": 1, "Lines": 2, "Polygons": 3, "Strips": 1}
@@ -69,6 +69,11 @@ def check_strains(found, drawn, positions, first_line):
     assert not found[:, :first_line].any() and not found[:, first_line + wanted.shape[1] :].any()
 
 
+def same_numbers(a, b):
+    """Whether two arrays are the same; a spring that is broken has NaN in both."""
+    return np.array_equal(a, b, equal_nan=True)
+
+
 def check_frames(stem, root_file, times):
     """The virtual datasets are the rows, and the .xdmf names them whole."""
     root = root_file["VTKHDF"]
@@ -81,8 +86,8 @@ def check_frames(stem, root_file, times):
         for name, rows in data.items():
             count = len(rows) // len(frames)
             assert group[name].is_virtual
-            assert np.array_equal(group[name][...], rows[k * count : (k + 1) * count])
-            assert np.array_equal(found[name], group[name][...])
+            assert same_numbers(group[name][...], rows[k * count : (k + 1) * count])
+            assert same_numbers(found[name], group[name][...])
         assert np.array_equal(found["position"], found["Points"])
         wanted = [cell for kind in KINDS for cell in cells_of(root, kind)]
         assert mixed_cells(found["Topology"]) == wanted
@@ -148,6 +153,24 @@ class Vtkhdf(Motions):
         self.check_scene("massless")
         self.check_scene("meshed", [(0, 1, 2), (0, 2, 3)])
         self.assertEqual(glob.glob("*.part"), [])
+
+    def test_the_strain_of_a_broken_spring_is_no_number(self):
+        words = "--method verlet --step-size 1e-3 --until 0.3 --every 0.02 --breaks breaks.csv"
+        times, positions, _ = self.table_of(f"--scene breaking.toml {words} --motion b.vtkhdf")
+        drawn = tomllib.loads(read("breaking.toml"))
+        (broken,) = rows_of(read("breaks.csv"))
+        self.assertEqual(broken["spring"], 1)
+        with h5py.File("b.vtkhdf") as file:
+            found = file["VTKHDF/CellData/strain"][...].reshape(len(times), -1)
+            check_frames("b", file, times)
+        # The node on no spring is the first cell.
+        self.assertEqual(found.shape, (len(times), 3))
+        after = times > broken["t"]
+        self.assertTrue(0 < after.sum() < len(times) - 1)
+        self.assertTrue(np.array_equal(np.isnan(found[:, 2]), after))
+        whole = drawn | {"springs": drawn["springs"][:1]}
+        check_strains(found[:, :2], whole, positions, 1)
+        check_strains(found[~after], drawn, positions[~after], 1)
 
     def test_fields_that_are_not_named_are_left_out(self):
         for fields, kept in ("strain", ["strain"]), ("none", []):

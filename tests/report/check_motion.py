@@ -130,6 +130,26 @@ class Larger(Shown):
         self.assertIsNone(page.data["answers"])
         self.assertNotIn("phase", page.data["motion"]["runs"][0])
 
+    def test_a_broken_spring_is_gone_from_the_picture_and_from_the_page(self):
+        for down in ([0, -1], [-1]):
+            nodes = [pin(*(0 * d for d in down))]
+            nodes += [node(*(i * d for d in down), mass=1) for i in (1, 2)]
+            links = [spring(i, i + 1, 900, rest_length=1.0) for i in range(2)]
+            links[1]["breaks_at"] = 0.018  # at about 0.11 s
+            path = self.folder / "breaking.toml"
+            gravity = [9.81 * d for d in down]
+            write(path, scene(nodes, links, gravity=gravity, until=0.4))
+            page, axes = self.shown(f"--scene {path} --methods verlet --step-size 0.01")
+            for run in page.data["motion"]["runs"]:
+                own = np.frombuffer(page.blobs[run["broken_from"]], "<u4").tolist()
+                self.assertEqual(own[0], len(run["times"]))
+                self.assertTrue(0.09 < run["times"][own[1] - 1] < run["times"][own[1]] < 0.13)
+            # Outlines are at 0.1 s and later; on a line, the lowest node stands alone.
+            outlines = [one.collections[-1].get_segments() for one in axes[: 2 * picture.TIMES]]
+            whole, torn = ((2, 2), (2,)) if len(down) == 2 else ((3,), (1, 2))
+            sizes = [tuple(map(len, lines)) for lines in outlines]
+            self.assertEqual(sizes, 2 * [whole, torn, torn, torn])
+
     def test_a_run_that_blows_up_is_told(self):
         status, said, _ = self.show(
             "--scene cloth --methods explicit_euler --step-size 0.01 --until 0.5"

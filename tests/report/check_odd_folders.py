@@ -249,9 +249,14 @@ class Motions(Folder):
         def far(root):
             root["Lines/Connectivity"][0] = 99
 
+        def strained(root):
+            root["CellData/strain"] = np.zeros(7, "f4")
+
         path = self.folder / self.motion
         whole, lacks = path.read_bytes(), "does not hold a motion. It is not shown."
-        for change, words in ((without, lacks), (elsewhere, lacks), (shorter, ""), (far, "")):
+        unlike = "cannot be read: its strain does not fit its springs. It is not shown."
+        changes = ((without, lacks), (elsewhere, lacks), (shorter, ""), (far, ""), (strained, unlike))
+        for change, words in changes:
             path.write_bytes(whole)
             with self.opened(self.table[1]) as file:
                 change(file["VTKHDF"])

@@ -1,9 +1,12 @@
 """Motions on a page, in a real browser; check_page.py runs these with its own."""
 
+import numpy as np
 from selenium.webdriver.common.keys import Keys
 
+import made_folder
 from browser import Page
 from packed_folder import edit_json
+from study_tables import read_table
 
 DRAWS = "Number(document.querySelector('.views').dataset.draws)"
 ENDED = "run.outcome === 'reached_end'"
@@ -257,6 +260,33 @@ class Moving(Page):
         # Two views beside each other: a square is half as wide as both.
         self.assertLess(shapes[1], 0.35)
         self.assertGreater(shapes[2], 0.45)
+
+    def test_broken_springs_are_not_drawn(self):
+        # Few springs are thick lines, many are thin ones. Some of them break at the fifth frame.
+        for springs, kind in ((40, {"side": 5}), (3120, {"side": 40, "runs": 2})):
+            inks = []
+            for broken in (0, springs * 3 // 4):
+                def change(folder, springs=springs, broken=broken):
+                    for row in read_table(folder / "motions.csv"):
+                        broken_from = np.where(np.arange(springs) < broken, 4, 99)
+                        made_folder.write_strains(folder / row["file"], broken_from)
+
+                name = f"broken_{broken}_of_{springs}"
+                self.show(page=self.packed(name, change, has_faces=False, **kind))
+                self.browser.wait(f"{DRAWS} > 0")
+                end, start = (self.inks_at(time) for time in ("report.until", "0"))
+                self.assertEqual(self.inks_at("report.until"), end)
+                inks.append((start, end))
+                self.doCleanups()  # which look at this page
+            (start, whole), (start_of_broken, rest) = inks
+            self.assertEqual(start_of_broken, start)
+            for left, all_of_it in zip(rest, whole):
+                self.assertLess(left, 0.8 * all_of_it)
+
+    def inks_at(self, time):
+        """The dark points of both views at a time."""
+        self.browser.run(f"const {{ report, goTo }} = qddotReport; goTo({time})")
+        return self.browser.driver.execute_async_script(INKS)
 
     def test_many_choices_leave_no_drawings_behind(self):
         self.load(self.made)

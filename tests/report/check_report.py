@@ -184,6 +184,35 @@ class Motions(Folder):
             ratio = math.log10(largest / min(1.0, float(row["largest_distance"])))
             self.assertLessEqual(abs(ratio), 14 / 254 / 2 + 1e-6)
 
+    def test_a_run_tells_from_which_frame_each_spring_is_broken(self):
+        without = self.make(side=5, runs=2, frames=9).data["motion"]
+        first, second, _ = self.rows("motions.csv")
+        broken_from = np.full(40, 99)
+        broken_from[[3, 17]] = 4, 0
+        made_folder.write_strains(self.folder / first["file"], broken_from)
+        made_folder.write_strains(self.folder / second["file"], np.full(40, 99))
+        result = self.page()
+        motion = result.data["motion"]
+        told = [run.pop("broken_from", None) for run in motion["runs"]]
+        self.assertEqual(told, ["b0", None, None])
+        wanted = np.minimum(broken_from, 9).tolist()
+        self.assertEqual(np.frombuffer(result.blobs["b0"], "<u4").tolist(), wanted)
+        self.assertEqual(motion["notes"], ["Broken springs are not drawn."])
+        # All else is as it was; where nothing breaks, the page is the same as without strains.
+        self.assertEqual(motion | {"notes": []}, without)
+        self.assertNotIn("b1", result.blobs)
+
+    def test_the_frame_of_a_break_is_one_of_the_kept_frames(self):
+        made_folder.make_folder(self.folder, side=3, frames=40, runs=1)
+        row = self.rows("motions.csv")[0]
+        made_folder.write_strains(self.folder / row["file"], np.arange(12) * 4)
+        motion = motion_files.open_motion(self.folder, row["file"])
+        self.addCleanup(motion.file.close)
+        kept = (0, 9, 20, 39)
+        wanted = np.searchsorted(kept, np.arange(12) * 4)
+        self.assertEqual(motion.broken_from(kept).tolist(), wanted.tolist())
+        self.assertIsNone(motion.broken_from((0,)[1:]))
+
     def test_energies_have_the_digits_that_are_shown(self):
         self.folder.mkdir()
         (self.folder / "motions_energy.csv").write_text(

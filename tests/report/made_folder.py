@@ -81,6 +81,18 @@ def write_vtkhdf(path, sheet, times, positions, distance):
             data.create_dataset("distance_to_reference", data=values, **options)
 
 
+def write_strains(path, broken_from):
+    """Adds strains to a motion that was written: zero, and NaN from these frames of the springs on,
+    one for each spring."""
+    with h5py.File(path, "r+") as file:
+        root = file["VTKHDF"]
+        frames, cells = len(root["Steps/Values"]), len(root["Polygons/Offsets"]) - 1
+        strains = np.zeros((frames, len(broken_from) + cells), "f4")
+        is_broken = np.arange(frames)[:, None] >= np.asarray(broken_from)
+        strains[:, : len(broken_from)][is_broken] = np.nan
+        root["CellData/strain"] = strains.reshape(-1)
+
+
 def energies(name, times, error):
     """Rows of motions_energy.csv."""
     kinetic = 0.2 * np.cos(4 * np.pi * times) ** 2

@@ -68,7 +68,12 @@ BOOST_AUTO_TEST_CASE(malformed_values_are_named) {
        {"stiffness = 1000.0\n", "", {":13:", "springs[0].stiffness", "missing", "from 0"}},
        {"rest_length = 0.5", "rest_length = -0.5", {":16:", "rest_length", "-0.5", "from 0"}},
        {"quartic = 7.0", "quartic = -inf", {":17:", "springs[0].quartic", "-inf", "from 0"}},
-       {"quartic", "cubic", {":17:", "springs[0].cubic", "unknown", "rest_length, quartic"}},
+       {"quartic", "quintic", {":17:", "springs[0].quintic", "unknown", "quartic"}},
+       {"quartic = 7.0", "cubic = nan", {":17:", "springs[0].cubic", "nan", "finite"}},
+       {"quartic = 7.0", "breaks_at = 0.0", {":17:", "springs[0].breaks_at", "0.0", "above 0"}},
+       {"quartic = 7.0",
+        "pulls_only = 1",
+        {":17:", "springs[0].pulls_only", "1", "true and false"}},
        {"[3.1, 4]", "[0.1, 0]", {"springs[0].rest_length", "0.5", "coincide", "is 0"}}});
 }
 

@@ -11,7 +11,11 @@ namespace {
 // Newton's method doubles the digits of each try, and a try beyond the moment costs one more.
 constexpr int most_tries = 40;
 // Times that are as close are one moment.
-constexpr double moment_roundings = 4;
+constexpr double moment_roundings = 8;
+// The part of a step to which a cubic's ends of phases are told apart, see first_below().
+constexpr double same_moment = 1e-5;
+
+double rounding_of(double t) { return moment_roundings * machine_epsilon * std::abs(t); }
 
 }  // namespace
 
@@ -56,6 +60,12 @@ bool SpringChanges::passes_end(const State& from, const State& to) {
   const double allowance = any_recent_ ? rtol_ * from.q.lpNorm<Eigen::Infinity>() : 0;
   passed_ = switching_->first_change(from, to, phases_,
                                      {is_recent_, allowance, target_ ? target_->number : -1});
+  // The place that is looked for is a little beyond the end of its phase at first, and so may those
+  // be that end with it. The next tries come closer.
+  if (passed_ && target_) {
+    const double same = same_moment * (target_->t - from.t) + rounding_of(from.t);
+    if (passed_->t >= target_->t - same) return false;
+  }
   if (passed_) {
     before_passed_ = from;
     return true;
@@ -78,6 +88,10 @@ void SpringChanges::forget_recent(const State& state) {
   }
 }
 
+bool SpringChanges::is_at_moment() const {
+  return !(target_->t > before_.t + rounding_of(before_.t));
+}
+
 void SpringChanges::aim() {
   target_ = passed_;
   std::swap(before_, before_passed_);
@@ -89,7 +103,7 @@ SpringChanges::Landing SpringChanges::land(State& state) {
   At at(state);
   at.phases = phases_.data();
   const Switching::Margin margin = switching_->margin(at, looked_for.number, looked_for.to);
-  const double rounded = moment_roundings * machine_epsilon * std::abs(state.t);
+  const double rounded = rounding_of(state.t);
   const double left = margin.rate != 0 ? -margin.length / margin.rate : 0;
   const bool is_there = std::abs(margin.length) <= margin.rounding || std::abs(left) <= rounded;
   if (!is_there && ++tries_ < most_tries) {

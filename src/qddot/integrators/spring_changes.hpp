@@ -59,6 +59,8 @@ class SpringChanges {
   bool is_looking() const { return target_.has_value(); }
   double moment() const { return target_->t; }
   const State& before() const { return before_; }
+  // Whether that state is at the moment, within rounding.
+  bool is_at_moment() const;
 
   enum class Landing { changed, closer, beyond, missed, endless };
   // Takes `state`, the end of a step at the moment. If the phase ends there within rounding, this

@@ -116,7 +116,7 @@ Outcome SystemRun::take_steps(double t_stop, State& state) {
     if (outcome == Outcome::chatters) {  // a step that passes the end of a phase
       changes_.aim();
       state = changes_.before();
-      if (changes_.moment() > state.t) {
+      if (!changes_.is_at_moment()) {
         go_on(state);
       } else if (const Outcome landed = land(state); landed != Outcome::reached_end) {
         return landed;

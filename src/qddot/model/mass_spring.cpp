@@ -1,5 +1,6 @@
 #include "qddot/model/mass_spring.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -657,9 +658,41 @@ class MassSpring final : public CapableSystem {
   mutable std::optional<ForStiffness> for_stiffness_;
 };
 
+// Moves links and anchors that are not plain to Network::general, numbered after those that are
+// there.
+void set_apart_general(Network& network) {
+  int next = 0;
+  for (const auto& spring : network.general) next = std::max(next, spring.number + 1);
+  const auto is_general = [](const auto& spring) { return !spring.law.is_plain(); };
+  if (std::ranges::any_of(network.image_links, is_general))
+    throw std::invalid_argument("a spring to a mirror image neither breaks nor goes slack");
+  for (const auto& link : network.links) {
+    if (!is_general(link)) continue;
+    network.general.push_back({.i = link.i,
+                               .j = link.j,
+                               .point = Eigen::Vector3d::Zero(),
+                               .law = link.law,
+                               .stiff = link.stiff,
+                               .number = next++});
+  }
+  for (const auto& anchor : network.anchors) {
+    if (!is_general(anchor)) continue;
+    network.general.push_back({.i = anchor.i,
+                               .j = -1,
+                               .point = anchor.point,
+                               .law = anchor.law,
+                               .stiff = anchor.stiff,
+                               .curve = anchor.curve,
+                               .number = next++});
+  }
+  std::erase_if(network.links, is_general);
+  std::erase_if(network.anchors, is_general);
+}
+
 }  // namespace
 
 std::unique_ptr<System> make_mass_spring(Network network, Forces forces) {
+  set_apart_general(network);
   if (network.dimension == 1) return std::make_unique<MassSpring<1>>(std::move(network), forces);
   if (network.dimension == 2) return std::make_unique<MassSpring<2>>(std::move(network), forces);
   if (network.dimension == 3) return std::make_unique<MassSpring<3>>(std::move(network), forces);

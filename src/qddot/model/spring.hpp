@@ -68,14 +68,14 @@ struct SpringLaw {
   template <class Real>
   Real energy(Real l) const {
     const Real s = l - rest_length, s2 = s * s;
-    if (is_slack(std::real(l))) return 0.0 * s;
+    if (is_slack(std::real(l))) return Real(0);
     return s2 * (0.5 * stiffness + cubic / 3 * s + 0.25 * quartic * s2);
   }
   // tau = dV/dl [N], positive in tension.
   template <class Real>
   Real tension(Real l) const {
     const Real s = l - rest_length;
-    if (is_slack(std::real(l))) return 0.0 * s;
+    if (is_slack(std::real(l))) return Real(0);
     return s * (stiffness + cubic * s + quartic * s * s);
   }
   // (V(b) - V(a))/(b - a) [N], in a form that does not cancel; tension(a) where a = b.
@@ -90,7 +90,7 @@ struct SpringLaw {
   template <class Real>
   Real tangent(Real l) const {
     const Real s = l - rest_length;
-    if (is_slack(std::real(l))) return 0.0 * s;
+    if (is_slack(std::real(l))) return Real(0);
     return stiffness + 2 * cubic * s + 3.0 * quartic * s * s;
   }
 };

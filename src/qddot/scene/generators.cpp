@@ -23,6 +23,9 @@
   GENERATOR(framed_cloth)           \
   GENERATOR(lattice)                \
   GENERATOR(fpu)                    \
+  GENERATOR(fput)                   \
+  GENERATOR(cable_net)              \
+  GENERATOR(bridge)                 \
   GENERATOR(strut)
 
 namespace qddot {

@@ -6,11 +6,13 @@ import { keptMotion, state } from "./report.js";
 import { words } from "./words.js";
 
 const KINDS = { kinetic: "#0072B2", potential: "#B35900", total: INK };
-const WORK = { dissipated: "#009E73", driven: "#7B3FA0" };
-// The terms beside the energy in the total of damped and driven motions, in words and in symbols.
+const WORK = { dissipated: "#009E73", driven: "#7B3FA0", released: "#A02040" };
+// The terms beside the energy in the total of damped, driven and breaking motions, in words and in
+// symbols.
 const KEPT = {
   dissipated: ["with what damping has taken", "+ W"],
   driven: ["less what driving has given", "− W driven"],
+  released: ["with what broken springs held", "+ W released"],
 };
 const REFERENCE_LINE = { color: REFERENCE, width: 4 };
 

@@ -32,8 +32,9 @@ function integrate(bytes, perFrame) {
   return places;
 }
 
-/** A run with its frames unpacked: `places` (frames x nodes x 3) and `distances` (frames x nodes)
-    or null. Rejects where its blobs cannot be unpacked. */
+/** A run with its frames unpacked: `places` (frames x nodes x 3), `distances` (frames x nodes) or
+    null, and `brokenFrom`, the frame from which each spring is broken, or null where none breaks.
+    Rejects where its blobs cannot be unpacked. */
 export async function unpacked(run) {
   const perFrame = 3 * motion.nodes;
   const places = integrate(await bytesOf(run.positions), perFrame);
@@ -41,10 +42,11 @@ export async function unpacked(run) {
   const count = run.times.length * motion.nodes;
   if (places.length !== 3 * count || (distances && distances.length !== count))
     throw new RangeError(`The motion of ${run.label} has not ${count} places.`);
-  return { ...run, perFrame, places, distances };
+  const brokenFrom = run.broken_from ? await nodeLists(run.broken_from) : null;
+  return { ...run, perFrame, places, distances, brokenFrom };
 }
 
-/** The pairs or triples of nodes in a blob of 32-bit integers. */
+/** The 32-bit integers of a blob, as the pairs or triples of nodes. */
 export async function nodeLists(id) {
   if (!id) return new Uint32Array(0);
   const { buffer } = await bytesOf(id);
@@ -60,6 +62,13 @@ export const frameAt = ({ times }, t) =>
     0,
     times.findLastIndex((time) => time <= t),
   );
+
+/** Those of the springs (pairs of nodes) that are not broken at a time. */
+export function wholeSprings(run, springs, t) {
+  if (!run.brokenFrom) return springs;
+  const frame = frameAt(run, t);
+  return springs.filter((_, end) => run.brokenFrom[end >> 1] > frame);
+}
 
 /** Writes the positions at a time in m into `out` (nodes x 3), straight between frames. */
 export function positionsAt({ times, places, perFrame }, t, out) {

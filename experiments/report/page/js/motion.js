@@ -19,6 +19,7 @@ import {
   nodeLists,
   positionsAt,
   unpacked,
+  wholeSprings,
 } from "./frames.js";
 import { choose, keptMotion, keptRuns, points, report, state, visit } from "./report.js";
 import { bodyOf, stageOf } from "./stage.js";
@@ -194,7 +195,7 @@ function show(t) {
     const largest = paint(run, body, t, color);
     // The chosen run is the last.
     if (largest !== null && run === scene.parts.at(-1).run) pointAt(largest);
-    body.update();
+    body.update(wholeSprings(run, scene.springs, t));
     if (color) continue;
     const isOver = t > run.times.at(-1) && (run.outcome !== "reached_end" || endsEarly(run));
     view.style.background = isOver ? "#fbe9e5" : "";
@@ -264,7 +265,7 @@ export async function drawMotion() {
     view: views[together ? 0 : at],
     color: together ? shown[at].color : null,
   }));
-  scene = { parts, lift, bounds, table: colorTable() };
+  scene = { parts, lift, bounds, springs, table: colorTable() };
   const until = Math.max(...frames.map((run) => run.times.at(-1)));
   // A single frame has no time to go through.
   player.remove();

@@ -51,12 +51,13 @@ for (const { energy, times } of motions.filter((run) => run.energy)) {
   energy.potential = energy.total.map((total, at) =>
     total === null || energy.kinetic[at] === null ? null : total - energy.kinetic[at],
   );
-  // What an exact motion keeps: the total, with what damping has taken and less what driving has
-  // given.
+  // An exact motion keeps the total, with what damping has taken and broken springs held, and less
+  // what driving has given.
   energy.kept = energy.total.map((total, at) => {
     const taken = energy.dissipated ? energy.dissipated[at] : 0;
     const given = energy.driven ? energy.driven[at] : 0;
-    return [total, taken, given].includes(null) ? null : total + taken - given;
+    const held = energy.released ? energy.released[at] : 0;
+    return [total, taken, given, held].includes(null) ? null : total + taken - given + held;
   });
 }
 

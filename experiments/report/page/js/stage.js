@@ -20,7 +20,8 @@ function discTexture() {
   return new THREE.CanvasTexture(canvas);
 }
 
-// Lines of some pixels' width between pairs of nodes: the ends are copied at each change.
+// Lines of some pixels' width between pairs of nodes: the ends of those shown are copied at each
+// change.
 function thickLines(springs, width, color) {
   const geometry = new THREE.LineSegmentsGeometry();
   geometry.setPositions(new Float32Array(3 * springs.length));
@@ -29,15 +30,29 @@ function thickLines(springs, width, color) {
     geometry,
     new THREE.LineMaterial({ linewidth: width, vertexColors: true, color }),
   );
-  const copy = ({ data }, values) => {
-    springs.forEach((node, end) =>
+  const copy = ({ data }, values, shown) => {
+    shown.forEach((node, end) =>
       data.array.set(values.subarray(3 * node, 3 * node + 3), 3 * end),
     );
     data.needsUpdate = true;
   };
-  lines.userData.update = (positions, colors) => {
-    copy(geometry.attributes.instanceStart, positions);
-    copy(geometry.attributes.instanceColorStart, colors);
+  lines.userData.update = (shown, positions, colors) => {
+    geometry.instanceCount = shown.length / 2;
+    copy(geometry.attributes.instanceStart, positions, shown);
+    copy(geometry.attributes.instanceColorStart, colors, shown);
+  };
+  return lines;
+}
+
+// Thin lines between pairs of nodes, by an index of their own: springs are of several bodies.
+function thinLines(geometry, look) {
+  const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial(look));
+  lines.userData.update = (shown) => {
+    // Springs that break stay broken: as many are the same ones.
+    if (shown.length === geometry.drawRange.count) return;
+    geometry.index.array.set(shown);
+    geometry.index.needsUpdate = true;
+    geometry.setDrawRange(0, shown.length);
   };
   return lines;
 }
@@ -55,7 +70,8 @@ function turned(direction, up) {
 }
 
 /** The body of `nodes` nodes: springs as lines, faces shaded, nodes as points where they are few;
-    update() draws its positions and colours (both nodes x 3) from then on. */
+    update(shown) draws its positions and colours (both nodes x 3) from then on, with the springs
+    shown. */
 export function bodyOf({ nodes, springs, faces, pinned, up }) {
   const scene = new THREE.Scene();
   const positions = new Float32Array(3 * nodes);
@@ -88,13 +104,13 @@ export function bodyOf({ nodes, springs, faces, pinned, up }) {
   // Springs are darker than the faces below them, so that the weave is visible.
   const shade = hasFaces ? 0x777777 : 0xffffff;
   if (springs.length > 2 * FEW_SPRINGS) {
-    const thin = new THREE.LineBasicMaterial({
+    const look = {
       vertexColors: true,
       color: shade,
       transparent: hasFaces,
       opacity: hasFaces ? 0.35 : 1,
-    });
-    parts.push(new THREE.LineSegments(geometry(springs), thin));
+    };
+    parts.push(thinLines(geometry(springs.slice()), look));
   } else if (springs.length) {
     parts.push(thickLines(springs, hasFaces ? 1.2 : springs.length <= 600 ? 2.6 : 1.5, shade));
   }
@@ -114,10 +130,10 @@ export function bodyOf({ nodes, springs, faces, pinned, up }) {
   for (const part of parts) part.frustumCulled = false;
   scene.add(...parts);
 
-  function update() {
+  function update(shown) {
     position.needsUpdate = true;
     color.needsUpdate = true;
-    for (const part of parts) part.userData.update?.(positions, colors);
+    for (const part of parts) part.userData.update?.(shown, positions, colors);
   }
 
   function dispose() {
