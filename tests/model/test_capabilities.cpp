@@ -79,7 +79,7 @@ class Offering final : public CapableSystem {
     phases[0] = at.q[0] < 1 ? Phase::slack : Phase::taut;
   }
   std::optional<Change> first_change(const State& from, const State& to, std::span<const Phase>,
-                                     const Recent&) const override {
+                                     const Changed&) const override {
     if ((from.q[0] < 1) == (to.q[0] < 1)) return {};
     return Change{to.t, 0, to.q[0] < 1 ? Phase::slack : Phase::taut};
   }
