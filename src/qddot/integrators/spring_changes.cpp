@@ -23,7 +23,8 @@ double rounding_of(double t) { return moment_roundings * machine_epsilon * std::
 bool steps_over_slack(int order, const System& system) {
   if (!system.switching()) return false;
   const std::optional<int> slack = system.switching()->order_of_slack();
-  return slack && order > 0 && order <= *slack + 1;
+  // A jump of f itself may leave an implicit equation without a solution.
+  return slack && *slack > 0 && order > 0 && order <= *slack + 1;
 }
 
 SpringChanges::SpringChanges(const System& system, int order, double rtol)
@@ -31,7 +32,7 @@ SpringChanges::SpringChanges(const System& system, int order, double rtol)
   if (!switching_) return;
   finds_slack_ = switching_->order_of_slack() && !steps_over_slack(order, system);
   phases_.resize(static_cast<std::size_t>(switching_->phase_count()));
-  is_recent_.resize(phases_.size());
+  has_changed_.resize(phases_.size());
 }
 
 void SpringChanges::clear() {
@@ -52,14 +53,12 @@ void SpringChanges::begin(const State& state) {
   target_.reset();
   at_once_ = 0;
   last_ = state.t;
-  std::ranges::fill(is_recent_, 0);
-  any_recent_ = false;
+  std::ranges::fill(has_changed_, 0);
 }
 
 bool SpringChanges::passes_end(const State& from, const State& to) {
-  const double allowance = any_recent_ ? rtol_ * from.q.lpNorm<Eigen::Infinity>() : 0;
   passed_ = switching_->first_change(from, to, phases_,
-                                     {is_recent_, allowance, target_ ? target_->number : -1});
+                                     {has_changed_, rtol_ * from.q.lpNorm<Eigen::Infinity>()});
   // The place that is looked for is a little beyond the end of its phase at first, and so may those
   // be that end with it. The next tries come closer.
   if (passed_ && target_) {
@@ -70,22 +69,7 @@ bool SpringChanges::passes_end(const State& from, const State& to) {
     before_passed_ = from;
     return true;
   }
-  if (any_recent_) forget_recent(to);
   return false;
-}
-
-void SpringChanges::forget_recent(const State& state) {
-  const double allowance = rtol_ * state.q.lpNorm<Eigen::Infinity>();
-  any_recent_ = false;
-  for (int number = 0; number < std::ssize(is_recent_); ++number) {
-    const Phase phase = phases_[static_cast<std::size_t>(number)];
-    if (!is_recent_[static_cast<std::size_t>(number)]) continue;
-    const Phase next = phase == Phase::slack ? Phase::taut : Phase::slack;
-    const bool is_recent =
-        phase != Phase::broken && switching_->margin(state, number, next).length <= allowance;
-    is_recent_[static_cast<std::size_t>(number)] = is_recent;
-    any_recent_ = any_recent_ || is_recent;
-  }
 }
 
 bool SpringChanges::is_at_moment() const {
@@ -154,7 +138,7 @@ void SpringChanges::change(const Switching::Change& change, State& state) {
     broken_ = std::make_shared<const std::vector<Phase>>(std::move(broken));
   }
   phases_[static_cast<std::size_t>(change.number)] = change.to;
-  is_recent_[static_cast<std::size_t>(change.number)] = any_recent_ = true;
+  has_changed_[static_cast<std::size_t>(change.number)] = 1;
   ++count_;
   state.phases = broken_;
 }

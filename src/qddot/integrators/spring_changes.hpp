@@ -73,8 +73,6 @@ class SpringChanges {
 
  private:
   void change(const Switching::Change& change, State& state);
-  // Forgets the changes of springs that have moved on since.
-  void forget_recent(const State& state);
 
   const Switching* switching_;
   double rtol_;
@@ -89,8 +87,7 @@ class SpringChanges {
   std::vector<Break> breaks_;
   std::int64_t count_ = 0;
   std::vector<Switching::Change> due_;
-  std::vector<char> is_recent_;
-  bool any_recent_ = false;
+  std::vector<char> has_changed_;
 };
 
 }  // namespace qddot

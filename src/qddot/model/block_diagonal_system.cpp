@@ -292,7 +292,7 @@ void BlockDiagonalSystem::set_phases(const At& at, bool finds_slack,
 std::optional<Switching::Change> BlockDiagonalSystem::first_change(const State& from,
                                                                    const State& to,
                                                                    std::span<const Phase> phases,
-                                                                   const Recent& recent) const {
+                                                                   const Changed& changed) const {
   std::optional<Change> first;
   int before = 0;
   for_each(blocks_, from, [&](const System& block, const At& own, Index at) {
@@ -301,7 +301,7 @@ std::optional<Switching::Change> BlockDiagonalSystem::first_change(const State& 
     auto change = block.switching()->first_change(
         {own.t, own.q, own.v}, {to.t, to.q.segment(at, n), to.v.segment(at, n)},
         phases.subspan(before, count),
-        {recent.is_recent.subspan(before, count), recent.allowance, recent.but - before});
+        {changed.has_changed.subspan(before, count), changed.allowance});
     if (change && (!first || change->t < first->t)) {
       change->number += before;
       first = change;

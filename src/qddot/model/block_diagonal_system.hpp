@@ -71,7 +71,7 @@ class BlockDiagonalSystem final : public CapableSystem {
   void set_phases(const At& at, bool finds_slack, std::span<Phase> phases) const override;
   std::optional<Change> first_change(const State& from, const State& to,
                                      std::span<const Phase> phases,
-                                     const Recent& recent) const override;
+                                     const Changed& changed) const override;
   Margin margin(const At& at, int number, Phase to) const override;
   void add_due_changes(const At& at, std::span<const Phase> phases,
                        std::vector<Change>& due) const override;

@@ -185,13 +185,11 @@ class Switching {
     int number = 0;
     Phase to = Phase::by_length;
   };
-  // The springs that changed their phases last. The places after that have the error `allowance` of
-  // an adaptive method [m], so that one is not believed to change again up to that. The spring
-  // `but` changes at the end of the step and is left out.
-  struct Recent {
-    std::span<const char> is_recent;
+  // The springs that have changed their phases in a run. The places after that have the error
+  // `allowance` of an adaptive method [m], so that one is not believed to change back up to that.
+  struct Changed {
+    std::span<const char> has_changed;
     double allowance = 0;
-    int but = -1;
   };
   // How far a spring's length is from the end of its phase [m], its rate [m/s], and its rounding.
   struct Margin {
@@ -205,10 +203,11 @@ class Switching {
   // by_length, or that of each cable if `finds_slack`.
   virtual void set_phases(const At& at, bool finds_slack, std::span<Phase> phases) const = 0;
   // The first change in the step between two states from these phases on; nothing if there is none.
+  // A spring that may come to the end of its phase and back in a long step counts as well.
   // In the step each spring follows the cubic that has its ends' places and velocities.
   virtual std::optional<Change> first_change(const State& from, const State& to,
                                              std::span<const Phase> phases,
-                                             const Recent& recent) const = 0;
+                                             const Changed& changed) const = 0;
   // The margin from the change of spring `number` to a phase; at `at`, which has velocities.
   virtual Margin margin(const At& at, int number, Phase to) const = 0;
   // Appends the changes that are due at `at` for spring after spring, within rounding.

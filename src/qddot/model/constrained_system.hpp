@@ -90,8 +90,8 @@ class ConstrainedSystem final : public CapableSystem {
   }
   std::optional<Change> first_change(const State& from, const State& to,
                                      std::span<const Phase> phases,
-                                     const Recent& recent) const override {
-    return switching_->first_change(from, to, phases, recent);
+                                     const Changed& changed) const override {
+    return switching_->first_change(from, to, phases, changed);
   }
   Margin margin(const At& at, int number, Phase to) const override {
     return switching_->margin(at, number, to);

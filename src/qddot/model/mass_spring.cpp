@@ -278,7 +278,8 @@ class MassSpring final : public CapableSystem {
     const Curves curves = driven_.values(at);
     Index i = 0;
     const SpringLists<D>& springs = lists();
-    springs.for_each(all_taut_.data(), [&](const auto& spring) {
+    // By their own laws: a cable has no kink, and a broken spring's length may be told.
+    springs.for_each(nullptr, [&](const auto& spring) {
       if (turns_over(spring.law)) lengths[i++] = springs.between({at.q, curves}, spring)[0];
     });
   }
@@ -313,9 +314,15 @@ class MassSpring final : public CapableSystem {
   }
   std::optional<Change> first_change(const State& from, const State& to,
                                      std::span<const Phase> phases,
-                                     const Recent& recent) const override {
+                                     const Changed& changed) const override {
     return switches_.first_change(from.t, moving_nodes(from), to.t, moving_nodes(to), phases,
-                                  recent);
+                                  changed, mass(), [&](bool is_end, Vec& f) {
+                                    const State& state = is_end ? to : from;
+                                    At at(state.t, state.q, state.v);
+                                    at.phases = phases.data();
+                                    f.resize(size());
+                                    force(at, f);
+                                  });
   }
   Margin margin(const At& at, int number, Phase to) const override {
     return switches_.margin(moving_nodes(at), number, to);

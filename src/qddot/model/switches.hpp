@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -69,25 +70,20 @@ class Switches {
     }
   }
 
+  // `pull(is_end, f)` gives the system's forces at both ends of the step, in these phases.
+  template <class Pull>
   std::optional<Change> first_change(double t_from, const MovingNodes<D>& from, double t_to,
                                      const MovingNodes<D>& to, std::span<const Phase> phases,
-                                     const Switching::Recent& recent) const {
+                                     const Switching::Changed& changed, const Vec& mass,
+                                     const Pull& pull) const {
     std::optional<Change> first;
-    const double h = t_to - t_from;
+    Step step{from, to, t_from, t_to - t_from, mass, {}, {}};
     for (const Spring& spring : springs_) {
-      if (spring.number == recent.but) continue;
-      const bool is_recent = recent.is_recent[static_cast<std::size_t>(spring.number)];
+      const bool has_changed = changed.has_changed[static_cast<std::size_t>(spring.number)];
       for_each_end(spring, phases, [&](Phase next) {
-        const double bound = length_at(spring, next),
-                     tolerance =
-                         band * rounding_of(spring, from) + (is_recent ? recent.allowance : 0);
-        const Point a = difference(spring, from), d = difference(spring, to);
-        const Point b = a + h / 3 * rate(spring, from), c = d - h / 3 * rate(spring, to);
-        SquaredLength inside = squared_length<D>(a, b, c, d);
-        for (double& x : inside) x = next == Phase::slack ? x - bound * bound : bound * bound - x;
-        const auto s = first_below(inside, -2 * bound * tolerance);
-        if (s && (!first || t_from + *s * h < first->t))
-          first = Change{t_from + *s * h, spring.number, next};
+        const auto s = end_in_step(spring, next, step, has_changed, changed.allowance, pull);
+        if (s && (!first || t_from + *s * step.h < first->t))
+          first = Change{t_from + *s * step.h, spring.number, next};
       });
     }
     return first;
@@ -126,7 +122,75 @@ class Switches {
 
   // The roundings of places that a length is believed to, and those that a spring may be beyond the
   // end of its phase. One that rests there would change its phase for ever.
-  static constexpr double roundings = 4, band = 4;
+  static constexpr double roundings = 4, band = 4, roundings_of_moment = 16;
+  // h w up to which the cubic has an error of 2e-4 of the amplitude, and beyond which the quintic
+  // tells nothing.
+  static constexpr double well_resolved = 0.5, longest_resolved = 6;
+
+  // A step, and the accelerations at its ends once something needs them.
+  struct Step {
+    const MovingNodes<D>&from, &to;
+    double t, h;
+    const Vec& mass;
+    Vec a_from, a_to;
+  };
+
+  // The part of the step after which the spring's phase ends. In a step that does not resolve the
+  // spring's vibration w well, the cubic through both ends hides short turns. There the quintic
+  // tells that has both accelerations as well. Its error is (h w)^4/5760 of h^2/8 times these, so
+  // that nearer turns count as ends: a step then ends there, and the next one sees more.
+  template <class Pull>
+  std::optional<double> end_in_step(const Spring& spring, Phase next, Step& step, bool has_changed,
+                                    double allowance, const Pull& pull) const {
+    const double bound = length_at(spring, next), h = step.h;
+    const Point a = difference(spring, step.from), d = difference(spring, step.to);
+    const Point va = rate(spring, step.from), vd = rate(spring, step.to);
+    double tolerance = band * rounding_of(spring, step.from);
+    if (has_changed) {
+      const Margin margin = margin_of(spring, step.from, next);
+      // A moment is known to its own rounding.
+      const double unsure = allowance + roundings_of_moment * machine_epsilon * std::abs(step.t) *
+                                            std::abs(margin.rate);
+      if (margin.length <= tolerance + unsure) tolerance += unsure;
+    }
+    const auto inside = [&](auto squares) {
+      for (double& x : squares) x = next == Phase::slack ? x - bound * bound : bound * bound - x;
+      return squares;
+    };
+    const SquaredLength by_cubic = inside(squared_length<D>(a, a + h / 3 * va, d - h / 3 * vd, d));
+    const double turn = h * frequency(spring, step.mass);
+    const double sagitta = h / 8 * (vd - va).norm();
+    const bool is_resolved = turn < well_resolved || turn > longest_resolved || spring.curve >= 0;
+    if (is_resolved || *std::ranges::min_element(by_cubic) > 2 * bound * (2 * sagitta + tolerance))
+      return first_below(by_cubic, -2 * bound * tolerance);
+    if (step.a_from.size() == 0) {
+      pull(false, step.a_from);
+      pull(true, step.a_to);
+      for (Vec* f : {&step.a_from, &step.a_to}) *f = f->cwiseQuotient(step.mass);
+    }
+    const Point aa = acceleration(spring, step.a_from), ad = acceleration(spring, step.a_to);
+    const auto by_quintic = inside(squared_length<D>(
+        std::array<Point, 6>{a, a + h / 5 * va, a + 2 * h / 5 * va + h * h / 20 * aa,
+                             d - 2 * h / 5 * vd + h * h / 20 * ad, d - h / 5 * vd, d}));
+    if (const auto s = first_below(by_quintic, -2 * bound * tolerance)) return s;
+    const double unseen = 2 * std::pow(turn, 4) / 5760 * h * h / 8 * std::max(aa.norm(), ad.norm());
+    const double near = 2 * bound * std::min(unseen, sagitta);
+    if (by_quintic.front() <= near || by_quintic.back() <= near) return {};
+    return first_below(by_quintic, near);
+  }
+
+  // The frequency of the spring alone [rad/s].
+  double frequency(const Spring& spring, const Vec& mass) const {
+    const auto per_mass = [&](int node) {
+      return node < 0 || layout_.count(node) == 0 ? 0 : 1 / mass[layout_.first(node)];
+    };
+    return std::sqrt(spring.law.stiffness * (per_mass(spring.i) + per_mass(spring.j)));
+  }
+  // The acceleration of d, of a spring whose point rests.
+  Point acceleration(const Spring& spring, const Vec& a) const {
+    const Point own = layout_.at(a, spring.i);
+    return spring.j < 0 ? Point(-own) : layout_.at(a, spring.j) - own;
+  }
 
   // Calls see(next phase) for each end that the present phase of the spring may have.
   template <class See>

@@ -119,11 +119,11 @@ Outcome Rosenbrock::attempt(const Instant& now, double h, Instant& next, Vec& er
   error_v = u_v_.rightCols<1>();
   q += error_q;
   v += error_v;
+  next.state.work = now.state.work;
   if (is_driven()) {
     // Simpson's rule, with the middle of the cubic through both ends.
     x_ = (now.state.q + q) / 2 + h / 8 * (now.state.v - v);
-    next.state.work =
-        now.state.work +
+    next.state.work +=
         h / 6 * (power({t, now.state.q}) + 4 * power({t + h / 2, x_}) + power({t + h, q}));
   }
   return Outcome::reached_end;

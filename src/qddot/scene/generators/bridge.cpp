@@ -1,4 +1,4 @@
-// A truss bridge between two banks that a load in its middle breaks: two chords of equal panels
+// A truss bridge between two banks that a truck in its middle breaks: two chords of equal panels
 // with posts and crossed diagonals, in the plane of x and y. Each member breaks at one strain.
 #include <cmath>
 
@@ -26,7 +26,7 @@ Scene draw_bridge(const GeneratorValues& p) {
                              .pinned = y == 0 && (i == 0 || i == panels)});
     }
   }
-  scene.nodes[2 * (panels / 2)].load = {0, -p.at("force"), 0};
+  scene.nodes[2 * (panels / 2)].mass += p.at("truck");
   const auto join = [&](std::size_t a, std::size_t b) {
     const double length = (scene.nodes[b].position - scene.nodes[a].position).norm();
     scene.springs.push_back({{a, b},
@@ -50,16 +50,16 @@ Scene draw_bridge(const GeneratorValues& p) {
 
 Generator bridge() {
   return {.name = "bridge",
-          .summary = "a truss bridge that a load in its middle breaks",
+          .summary = "a truss bridge that a truck in its middle breaks",
           .parameters = {{"panels", 8, 2, 1e5, "how many panels", true},
                          {"length", 8, least, most, "between the banks in m"},
                          {"height", 1, least, most, "of a panel in m"},
                          {"mass", 100, least, most, "of all nodes together in kg"},
                          {"modulus", 1e6, least, most, "k times length of each member in N"},
-                         {"force", 1.5e4, -most, most, "on the node in the middle in N, down"},
+                         {"truck", 1500, 0, most, "on the node in the middle in kg"},
                          {"breaks_at", 0.02, least, most, "the strain at which members break"},
                          {"gravity", 9.81, -most, most, "g along -y in m/s^2"},
-                         {"until", 0.5, least, most, "the end time in s"}},
+                         {"until", 1, least, most, "the end time in s"}},
           .size = size_of_bridge,
           .draw = draw_bridge};
 }

@@ -48,7 +48,7 @@ Generator cable_net() {
                          {"mass", 1, least, most, "of all nodes together in kg"},
                          {"stiffness", 2000, 0, most, "of each cable in N/m"},
                          {"gravity", 9.81, -most, most, "g along -z in m/s^2"},
-                         {"until", 0.5, least, most, "the end time in s"}},
+                         {"until", 0.3, least, most, "the end time in s"}},
           .size = size_of_net,
           .draw = draw_net};
 }
