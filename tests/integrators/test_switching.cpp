@@ -378,4 +378,62 @@ BOOST_AUTO_TEST_CASE(parts_have_breaks_of_their_own) {
   }
 }
 
+namespace {
+
+// A mass in free flight, and a spring that changes its phase at once and for ever.
+class Restless final : public CapableSystem {
+ public:
+  Restless() : CapableSystem(Vec::Ones(1)) {}
+  double potential(const At&) const override { return 0; }
+  void force(const At&, MutableVec f) const override { f.setZero(); }
+  const Switching* switching() const override { return this; }
+  Index phase_count() const override { return 1; }
+  std::optional<int> order_of_slack() const override { return 1; }
+  void set_phases(const At&, bool, std::span<Phase> phases) const override {
+    phases[0] = Phase::slack;
+  }
+  std::optional<Change> first_change(const State& from, const State&, std::span<const Phase> phases,
+                                     const Changed&) const override {
+    if (from.t < 0.5) return {};
+    return Change{from.t, 0, phases[0] == Phase::slack ? Phase::taut : Phase::slack};
+  }
+  Margin margin(const At&, int, Phase) const override { return {0, -1, 1e-16}; }
+  void add_due_changes(const At&, std::span<const Phase>, std::vector<Change>&) const override {}
+  double energy_of(const At&, int) const override { return 0; }
+  double strain_of(const At&, int) const override { return 0; }
+
+ private:
+  void material_stiffness(const At&, SymmetricMatrix&) const override {}
+  void weighted_stiffness(const At&, double, SymmetricMatrix&) const override {}
+  void mean_force(const At&, const At&, MutableVec) const override {}
+  void assemble_laplacian(SymmetricMatrix&) const override {}
+  bool bounds_stiffness() const override { return false; }
+  bool is_linear_at(const At&) const override { return false; }
+  bool is_valid_at(const At&) const override { return true; }
+  Index kink_count() const override { return 0; }
+  void kink_lengths(const At&, MutableVec) const override {}
+  void friction(const At&, MutableVec) const override {}
+  void damping_matrix(const At&, SymmetricMatrix&) const override {}
+  bool damping_is_constant() const override { return true; }
+  Work driving_power(const At&) const override { return {}; }
+  double potential_change(double, double, const At&) const override { return 0; }
+  void force_rate(const At&, MutableVec) const override {}
+  std::vector<Corner> corners() const override { return {}; }
+};
+
+}  // namespace
+
+// Changes that follow one another in no time end the run, and it says so.
+BOOST_AUTO_TEST_CASE(changes_without_end_are_an_outcome) {
+  const Restless system;
+  for (const char* name : {"verlet", "kahan_li8", "rk4"}) {
+    const Run r =
+        run(method_named(name), system, {0, Vec::Zero(1), Vec::Ones(1)}, 1, {.step_size = 0.01});
+    BOOST_TEST((r.summary.outcome == Outcome::chatters));
+    BOOST_TEST(r.summary.message == advice(Outcome::chatters));
+    BOOST_TEST(std::abs(r.summary.t_reached - 0.5) < 0.011);
+    BOOST_TEST(std::abs(r.state.q[0] - r.state.t) < 1e-12);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

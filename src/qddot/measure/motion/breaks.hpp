@@ -8,8 +8,9 @@
 
 namespace qddot::inline measure {
 
-// Moments that are no farther apart [s] are one: springs break in symmetry.
-inline double rounding_of_moment(double t) { return 64 * machine_epsilon * t; }
+// Moments that are no farther apart [s] are one: springs break in symmetry, up to the rounding of
+// thousands of steps. In so short a time the second one changes no motion beyond rounding.
+inline double rounding_of_moment(double t) { return 4096 * machine_epsilon * t; }
 
 // A sentence if two springs broke closer to each other than the errors of their times allow to
 // tell which was first; else empty. Springs that break in one moment by symmetry are left out.
