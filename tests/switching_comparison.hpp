@@ -176,7 +176,7 @@ inline void KnownSwitching::disturb() {
     why_unknown_ = "too many steps";
     return;
   }
-  // What each spring does; at the start some begin at their rest lengths.
+  // The state of each spring; at the start some begin at their rest lengths.
   const auto by_spring = [&](const std::vector<HoldChange>& all) {
     std::vector<std::vector<Hold>> own(scene_.springs.size());
     for (const HoldChange& one : all) {

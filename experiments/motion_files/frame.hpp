@@ -33,7 +33,7 @@ struct Frame {
   std::vector<float> velocities;        // [m/s]
   std::vector<float> kinetic_energies;  // [J]
   std::vector<float> distances;         // [m], to the reference
-  // Of all cells, zero but for springs; NaN for springs that are broken.
+  // Zero but for springs, and NaN for springs that are broken; of all cells.
   std::vector<float> strains;
 };
 

@@ -81,8 +81,8 @@ py::list breaks_of(const Model& model, const Summary& summary, const std::vector
     const Break& one = summary.breaks[k];
     const std::vector<std::size_t>& springs = model.general_springs();
     const auto number = static_cast<std::size_t>(one.number);
-    all.append(py::make_tuple(one.t, number < springs.size() ? springs[number] : number,
-                              one.strain, one.energy,
+    all.append(py::make_tuple(one.t, number < springs.size() ? springs[number] : number, one.strain,
+                              one.energy,
                               errors.empty() ? py::object(py::none()) : py::float_(errors[k])));
   }
   return all;

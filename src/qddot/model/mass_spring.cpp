@@ -11,6 +11,7 @@
 #include "qddot/model/compact_links.hpp"
 #include "qddot/model/directions.hpp"
 #include "qddot/model/driven_network.hpp"
+#include "qddot/model/general_springs.hpp"
 #include "qddot/model/in_tension.hpp"
 #include "qddot/model/kernels/springs_by_node.hpp"
 #include "qddot/model/kernels/stiffness_kernel.hpp"
@@ -18,6 +19,7 @@
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
+#include "qddot/model/secant_dashpot.hpp"
 #include "qddot/model/split_network.hpp"
 #include "qddot/model/spring_lists.hpp"
 #include "qddot/model/stiffness_blocks.hpp"
@@ -205,7 +207,7 @@ class MassSpring final : public CapableSystem {
     springs.add_forces(
         rate.phases,
         [&](const auto& spring) {
-          const SecantDashpot dashpot = secant_dashpot(
+          const SecantDashpot<D> dashpot = secant_dashpot<D>(
               spring.law, springs.between({q0, curves0}, spring),
               springs.between({q1, curves1}, spring), springs.between({q2, curves2}, spring), rate);
           power += dashpot.power;
@@ -432,28 +434,6 @@ class MassSpring final : public CapableSystem {
     }
   }
 
-  // A dashpot by the rate of its length: the force on its end i [N] and its power [W]. One of rest
-  // length zero resists in all directions, by the rate of d.
-  struct SecantDashpot {
-    Point force;
-    double power;
-  };
-  template <class Law>
-  static SecantDashpot secant_dashpot(const Law& law, const Point& d0, const Point& d1,
-                                      const Point& d2, const BackwardRate& rate) {
-    if constexpr (std::is_same_v<Law, SpringLaw>) {
-      if (law.is_slack(d0.norm())) return {Point::Zero(), 0};
-    }
-    if (D == 1 || law.rest_length == 0) {
-      const Point w = rate.a0 * d0 + rate.a1 * d1 + rate.a2 * d2;
-      return {law.damping * w, law.damping * w.squaredNorm()};
-    }
-    const double length = d0.norm();
-    const double l_rate = rate.a0 * length + rate.a1 * d1.norm() + rate.a2 * d2.norm();
-    const double along = length > 0 ? law.damping * l_rate / length : 0;
-    return {along * d0, law.damping * l_rate * l_rate};
-  }
-
   // See ForStiffness; `network` has the springs of this one.
   std::unique_ptr<const MassSpring> dashpots_of(Network network) const {
     network.node_mass.setOnes(layout_.nodes());  // of no effect on C, as are loads
@@ -664,37 +644,6 @@ class MassSpring final : public CapableSystem {
   mutable std::optional<SpringLists<D>> springs_;  // from the start without by_node_
   mutable std::optional<ForStiffness> for_stiffness_;
 };
-
-// Moves links and anchors that are not plain to Network::general, numbered after those that are
-// there.
-void set_apart_general(Network& network) {
-  int next = 0;
-  for (const auto& spring : network.general) next = std::max(next, spring.number + 1);
-  const auto is_general = [](const auto& spring) { return !spring.law.is_plain(); };
-  if (std::ranges::any_of(network.image_links, is_general))
-    throw std::invalid_argument("a spring to a mirror image neither breaks nor goes slack");
-  for (const auto& link : network.links) {
-    if (!is_general(link)) continue;
-    network.general.push_back({.i = link.i,
-                               .j = link.j,
-                               .point = Eigen::Vector3d::Zero(),
-                               .law = link.law,
-                               .stiff = link.stiff,
-                               .number = next++});
-  }
-  for (const auto& anchor : network.anchors) {
-    if (!is_general(anchor)) continue;
-    network.general.push_back({.i = anchor.i,
-                               .j = -1,
-                               .point = anchor.point,
-                               .law = anchor.law,
-                               .stiff = anchor.stiff,
-                               .curve = anchor.curve,
-                               .number = next++});
-  }
-  std::erase_if(network.links, is_general);
-  std::erase_if(network.anchors, is_general);
-}
 
 }  // namespace
 

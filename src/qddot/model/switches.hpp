@@ -41,6 +41,7 @@ class Switches {
       springs_.push_back(
           {spring.i, spring.j, spring.curve, spring.number, spring.point.head<D>(), spring.law});
     }
+    if (!springs_.empty()) sum_stiffness(network);
     place_.assign(static_cast<std::size_t>(count_), -1);
     for (int e = 0; e < std::ssize(springs_); ++e) place_[springs_[e].number] = e;
   }
@@ -136,7 +137,7 @@ class Switches {
   };
 
   // The part of the step after which the spring's phase ends. In a step that does not resolve the
-  // spring's vibration w well, the cubic through both ends hides short turns. There the quintic
+  // vibrations w of its ends well, the cubic through both ends hides short turns. There the quintic
   // tells that has both accelerations as well. Its error is (h w)^4/5760 of h^2/8 times these, so
   // that nearer turns count as ends: a step then ends there, and the next one sees more.
   template <class Pull>
@@ -179,12 +180,29 @@ class Switches {
     return first_below(by_quintic, near);
   }
 
-  // The frequency of the spring alone [rad/s].
-  double frequency(const Spring& spring, const Vec& mass) const {
-    const auto per_mass = [&](int node) {
-      return node < 0 || layout_.count(node) == 0 ? 0 : 1 / mass[layout_.first(node)];
+  void sum_stiffness(const Network& network) {
+    stiffness_.setZero(layout_.nodes());
+    const auto add = [&](const auto& springs) {
+      for (const auto& spring : springs) {
+        stiffness_[spring.i] += spring.law.stiffness;
+        if constexpr (requires { spring.j; }) {
+          if (spring.j >= 0) stiffness_[spring.j] += spring.law.stiffness;
+        }
+      }
     };
-    return std::sqrt(spring.law.stiffness * (per_mass(spring.i) + per_mass(spring.j)));
+    add(network.links);
+    add(network.image_links);
+    add(network.anchors);
+    add(network.general);
+  }
+  // A bound of the frequency of the spring's ends [rad/s], whatever else pulls them, if all other
+  // nodes rest.
+  double frequency(const Spring& spring, const Vec& mass) const {
+    const auto square = [&](int node) {
+      return node < 0 || layout_.count(node) == 0 ? 0
+                                                  : stiffness_[node] / mass[layout_.first(node)];
+    };
+    return std::sqrt(square(spring.i) + square(spring.j));
   }
   // The acceleration of d, of a spring whose point rests.
   Point acceleration(const Spring& spring, const Vec& a) const {
@@ -230,6 +248,7 @@ class Switches {
 
   const Layout<D>& layout_;
   std::vector<Spring> springs_;
+  Vec stiffness_;           // of all springs at each node, summed [N/m]
   std::vector<int> place_;  // of each number in springs_, or -1
   int count_ = 0;
 };
