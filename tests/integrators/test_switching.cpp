@@ -166,6 +166,35 @@ BOOST_DATA_TEST_CASE(a_bounce_on_a_cable_keeps_the_order, of_fixed_steps(), meth
   BOOST_TEST(order > method.order - (method.order > 6 ? 1.2 : 0.5));
 }
 
+// Steps end on all five moments, whose errors fall by the method's order.
+BOOST_DATA_TEST_CASE(moments_have_the_order_of_the_method, of_fixed_steps(), method) {
+  if (method.order <= 2) return;
+  const Bounce bounce;
+  const Problem p = bounce.problem();
+  const double until = 2.4 * bounce.period(), down = bounce.falling(),
+               up = down + bounce.bouncing(), period = bounce.period();
+  const std::vector<double> exact = {down, up, period + down, period + up, 2 * period + down};
+  const double order = observed_order(method, [&](double steps) {
+    std::vector<double> moments;
+    Observer observer;
+    observer.step = [&](const State& state) {
+      const bool is_new = moments.empty() || state.t > moments.back() + 1e-6;
+      // Steps of a try end within its rounding.
+      if (std::abs(state.q[0] - rest_length) < 1e-13 && is_new) moments.push_back(state.t);
+    };
+    run(method, p, until, {.step_size = until / steps}, observer);
+    // Some steps of a long formula are no motion yet.
+    if (moments.size() != exact.size() && steps < 100) return 1.0;
+    BOOST_TEST_REQUIRE(moments.size() == exact.size());
+    double error = 0;
+    for (std::size_t k = 0; k < exact.size(); ++k)
+      error = std::max(error, std::abs(moments[k] - exact[k]));
+    return error;
+  });
+  // The error of order 10 is that of rounding after a few steps of the ladder.
+  BOOST_TEST(order > method.order - (method.order > 8 ? 2.5 : method.order > 6 ? 1.2 : 0.5));
+}
+
 BOOST_DATA_TEST_CASE(a_spring_breaks_at_its_moment, of_fixed_steps(), method) {
   const Series series;
   const Problem p = series.problem();
