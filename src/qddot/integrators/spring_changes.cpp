@@ -108,10 +108,11 @@ SpringChanges::Landing SpringChanges::land(State& state) {
       return Landing::beyond;
     }
   }
-  target_.reset();
-  change(looked_for, state);
   due_.clear();
   switching_->add_due_changes(at, phases_, due_);
+  if (tries_ < most_tries && goes_back_for_others(at)) return Landing::beyond;
+  target_.reset();
+  change(looked_for, state);
   for (const Switching::Change& also : due_) {
     const bool is_broken = phases_[static_cast<std::size_t>(also.number)] == Phase::broken;
     if (also.number != looked_for.number && !is_broken) change(also, state);
@@ -123,6 +124,26 @@ SpringChanges::Landing SpringChanges::land(State& state) {
     last_ = state.t;
   }
   return Landing::changed;
+}
+
+// Whether another spring has passed the end of its phase by more than rounding: it was too near to
+// be told apart from the first one. Then it is looked for.
+bool SpringChanges::goes_back_for_others(const At& at) {
+  const double allowance = rtol_ * at.q.lpNorm<Eigen::Infinity>();
+  double back = 0;
+  for (const Switching::Change& also : due_) {
+    const bool has_changed =
+        has_changed_[static_cast<std::size_t>(also.number)] && also.to != Phase::broken;
+    const Switching::Margin margin = switching_->margin(at, also.number, also.to);
+    const double beyond = -margin.length - 4 * margin.rounding - (has_changed ? allowance : 0);
+    if (!(beyond > 0) || !(beyond / -margin.rate > back)) continue;
+    back = beyond / -margin.rate;
+    target_ = also;
+  }
+  if (back <= 2 * rounding_of(at.t) || !(at.t - back > before_.t + rounding_of(at.t))) return false;
+  target_->t = at.t - back;
+  ++tries_;
+  return true;
 }
 
 void SpringChanges::change(const Switching::Change& change, State& state) {

@@ -73,6 +73,7 @@ class SpringChanges {
 
  private:
   void change(const Switching::Change& change, State& state);
+  bool goes_back_for_others(const At& at);
 
   const Switching* switching_;
   double rtol_;

@@ -147,7 +147,7 @@ class Switches {
     const Point a = difference(spring, step.from), d = difference(spring, step.to);
     const Point va = rate(spring, step.from), vd = rate(spring, step.to);
     double tolerance = band * rounding_of(spring, step.from);
-    if (has_changed) {
+    if (has_changed && next != Phase::broken) {
       const Margin margin = margin_of(spring, step.from, next);
       // A moment is known to its own rounding.
       const double unsure = allowance + roundings_of_moment * machine_epsilon * std::abs(step.t) *
