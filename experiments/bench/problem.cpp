@@ -1,5 +1,6 @@
 #include "experiments/bench/problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,6 +18,13 @@ Reference reference_of(const Scene& drawn, const Scene& start, const Model& scen
                        const std::string& folder, const nlohmann::json& origin) {
   require_kept_energy(drawn, drawn.name,
                       "the other solvers are asked for motions that keep their energy");
+  const auto is_plain = [](const Spring& spring) { return spring.law.is_plain(); };
+  if (!std::ranges::all_of(drawn.springs, is_plain)) {
+    throw InvalidInput(
+        fmt::format("{}: the other solvers have no cubic springs and no cables; allowed are scenes "
+                    "without cubic and pulls_only",
+                    drawn.name));
+  }
   require_reference_exists(scene, drawn.name);
   Reference reference = reference_for(drawn, start, scene, until, folder, origin);
   if (reference.is_beyond_horizon()) {

@@ -104,6 +104,13 @@ void require_kept_energy(const Scene& drawn, const std::string& source, const st
         "{}: it is driven, and {}; allowed are scenes without motion and without forces in time",
         source, why));
   }
+  const auto can_break = [](const Spring& spring) { return spring.law.can_break(); };
+  if (std::ranges::any_of(drawn.springs, can_break)) {
+    throw InvalidInput(
+        fmt::format("{}: its springs may break, and {}; allowed are scenes without "
+                    "breaks_at",
+                    source, why));
+  }
   if (!is_damped(drawn)) return;
   throw InvalidInput(fmt::format(
       "{}: it is damped, and {}; allowed are scenes without damping and air_damping", source, why));
