@@ -8,7 +8,7 @@
 namespace qddot::inline measure {
 
 // Bounds of the errors of the times at which springs broke in a trial [s], in the order of its
-// breaks: differences to the runs that bound its error, counted twice as errors are. Infinite
+// breaks: differences to the runs that bound its error, counted twenty times. Infinite
 // where no other run says anything.
 std::vector<double> break_errors(const Search& search, const Trial& trial);
 
