@@ -65,7 +65,8 @@ Subject subject_of(Scene drawn, const SceneChoice& choice, double until);
 // methods that allow it. `source` names the scene.
 void require_fit(const Method& method, const Model& model, const std::string& source);
 
-// Throws InvalidInput if the scene is damped or driven, or a spring may break. `why` completes "it is damped, and ...".
+// Throws InvalidInput if the scene is damped or driven, or a spring may break. `why` completes "it
+// is damped, and ...".
 void require_kept_energy(const Scene& drawn, const std::string& source, const std::string& why);
 
 // The method of that name, which the option has. Throws InvalidInput if there is none.
