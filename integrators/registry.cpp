@@ -48,6 +48,10 @@
   METHOD(multirate_adams4)         \
   METHOD(multirate_adams5)         \
   METHOD(exact)                    \
+  METHOD(rattle)                   \
+  METHOD(rattle4)                  \
+  METHOD(rattle6)                  \
+  METHOD(rattle8)                  \
   METHOD(arkode_dirk2)             \
   METHOD(arkode_dirk3)             \
   METHOD(arkode_dirk4)             \

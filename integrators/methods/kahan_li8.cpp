@@ -6,32 +6,21 @@
 // The gamma_s have the sum 1 and are the same read backwards, so the method is time-reversible. It
 // is symplectic as well. Neighbouring half kicks are one kick, and the last force of a step is the
 // first of the next: 17 forces a step, and one to begin.
-#include "qddot/integrators/base/kick_drift.hpp"
+#include "integrators/methods/kahan_li8.hpp"
+
 #include "qddot/integrators/registry.hpp"
 
 namespace qddot::registered {
-namespace {
-
 const Splitting& kahan_li8_splitting() {
-  static const Splitting splitting = [] {
-    const std::vector<double> gamma = mirrored(
-        {0.13020248308889008087881763, 0.56116298177510838456196441, -0.38947496264484728640807860,
-         0.15884190655515560089621075, -0.39590389413323757733623154, 0.18453964097831570709183254,
-         0.25837438768632204729397911, 0.29501172360931029887096624, -0.60550853383003451169892108},
-        17);
-    std::vector<double> kicks;
-    double before = 0;
-    for (const double g : gamma) {
-      kicks.push_back((before + g) / 2);
-      before = g;
-    }
-    kicks.push_back(before / 2);
-    return Splitting{.order = 8, .kicks = kicks, .drifts = gamma};
-  }();
+  static const Splitting splitting =
+      verlet_composition(8, mirrored({0.13020248308889008087881763, 0.56116298177510838456196441,
+                                      -0.38947496264484728640807860, 0.15884190655515560089621075,
+                                      -0.39590389413323757733623154, 0.18453964097831570709183254,
+                                      0.25837438768632204729397911, 0.29501172360931029887096624,
+                                      -0.60550853383003451169892108},
+                                     17));
   return splitting;
 }
-
-}  // namespace
 
 Method kahan_li8() {
   return {.name = "kahan_li8",

@@ -36,6 +36,13 @@ class CountedSystem {
   // Has all places be in these phases of springs (see At), which must outlive it.
   void stay_in(const Phase* phases) { phases_ = phases; }
 
+  // The place in that piece and those phases.
+  At placed(At at) const {
+    at.within = within_;
+    at.phases = phases_;
+    return at;
+  }
+
   // f [N] into `f` (n).
   void force(const At& at, MutableVec f) { force(system_, at, f); }
   void force(const System& part, const At& at, MutableVec f) {
@@ -174,11 +181,6 @@ class CountedSystem {
     beside.before(0, system_.size());
     force(at, f);
     return beside.after(0, system_.size());
-  }
-  At placed(At at) const {
-    at.within = within_;
-    at.phases = phases_;
-    return at;
   }
   // Whether the force of the part books what driving gives: that of the whole, or the soft half.
   bool books(const System& part) const {

@@ -55,6 +55,7 @@ enum class Trait {
 
 // Properties of a system, beside its forces, that a method needs.
 enum class Need {
+  constraints,         // Constraints, in a block at least; other methods refuse them
   stiffness,           // K
   constant_stiffness,  // K that is the same everywhere
   split_forces,        // Split, in each block
@@ -152,6 +153,8 @@ inline bool is_known_in_time(const System& system) {
 
 // The reason why the method cannot run on the system, whatever its masses; nothing if it can.
 inline std::optional<Outcome> misfit(const Method& method, const System& system) {
+  if (method.asks(Need::constraints) != is_constrained(system))
+    return method.asks(Need::constraints) ? Outcome::no_constraints : Outcome::refuses_constraints;
   if (method.asks(Need::stiffness) && !system.has_stiffness()) return Outcome::no_stiffness;
   if (method.asks(Need::constant_stiffness) && !system.stiffness_is_constant())
     return Outcome::stiffness_varies;

@@ -26,6 +26,8 @@ enum class Outcome {
   not_conservative,      // a method for forces of positions alone, and a system whose f sees v
   refuses_damping,       // a method that would lose its order with the system's Damping
   not_autonomous,        // a method for forces that stay the same, and a system whose f sees t
+  no_constraints,        // a method that keeps Constraints, and a system without them
+  refuses_constraints,   // a method that keeps none, and a system that has some
   chatters,              // springs change their phases without end (Switching)
 };
 

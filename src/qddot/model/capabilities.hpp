@@ -218,7 +218,42 @@ class Switching {
   virtual double strain_of(const At& at, int number) const = 0;
 };
 
-// A system that implements all capabilities above. Its accessors say which of them it has.
+// G = dg/dq: m x n, row by row.
+using GradientMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// Constraints g(t, q) = 0, such as the lengths of rods, which forces along their gradients keep:
+//   M q'' = f - G'lambda,   g(t, q) = 0,   G = dg/dq (m x n)
+// The functions g are quadratic in q, so that G is linear. At g = 0, G has independent rows, and a
+// motion obeys G v + dg/dt = 0 as well. Source: Hairer, Lubich, Wanner, Geometric Numerical
+// Integration (2006), VII.1. f and V are those without constraints.
+class Constraints {
+ public:
+  virtual ~Constraints() = default;
+  // d2g_k/dq_i dq_j, i >= j [1/m].
+  struct Curvature {
+    Index k, i, j;
+    double value;
+  };
+  // The number m.
+  virtual Index constraint_count() const = 0;
+  // Writes g [m] into `g` (m).
+  virtual void constraint_values(const At& at, MutableVec g) const = 0;
+  // The pattern of G, with zero values.
+  virtual const GradientMatrix& gradient_pattern() const = 0;
+  // Writes G into `gradients`, which must have that pattern.
+  virtual void constraint_gradients(const At& at, GradientMatrix& gradients) const = 0;
+  // The same for dG/dt along the motion, at velocities [1/s].
+  virtual void gradient_rates(const At& at, GradientMatrix& rates) const = 0;
+  // Writes dg/dt at constant q [m/s], which moving supports cause, into `rates` (m).
+  virtual void constraint_rates(const At& at, MutableVec rates) const = 0;
+  // Writes g'' along a motion with q'' = 0 [m/s^2], at velocities, into `accelerations` (m).
+  virtual void constraint_accelerations(const At& at, MutableVec accelerations) const = 0;
+  // The second derivatives of g that are not zero.
+  virtual std::vector<Curvature> curvatures() const = 0;
+};
+
+// A system that implements all capabilities above but Constraints. Its accessors say which of them
+// it has.
 class CapableSystem : public System,
                       public SplitStiffness,
                       public DiscreteGradient,

@@ -54,6 +54,9 @@ class DrivenNetwork {
     return is_driven() ? values(Time(at)) : std::vector<Point>();
   }
   std::vector<Point> rates(const Time& time) const { return of_all(&TimeCurve::rate, time); }
+  std::vector<Point> accelerations(const At& at) const {
+    return of_all(&TimeCurve::acceleration, Time(at));
+  }
   std::vector<Point> rates(const At& at) const {
     return is_driven() ? rates(Time(at)) : std::vector<Point>();
   }

@@ -13,7 +13,7 @@ namespace qddot {
 inline void set_apart_general(Network& network) {
   int next = 0;
   for (const auto& spring : network.general) next = std::max(next, spring.number + 1);
-  const auto is_general = [](const auto& spring) { return !spring.law.is_plain(); };
+  const auto is_general = [](const auto& spring) { return spring.law.is_general(); };
   if (std::ranges::any_of(network.image_links, is_general))
     throw std::invalid_argument("a spring to a mirror image neither breaks nor goes slack");
   for (const auto& link : network.links) {

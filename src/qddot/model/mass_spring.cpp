@@ -19,6 +19,7 @@
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/model/massless_series.hpp"
 #include "qddot/model/nodal_loads.hpp"
+#include "qddot/model/rods.hpp"
 #include "qddot/model/secant_dashpot.hpp"
 #include "qddot/model/split_network.hpp"
 #include "qddot/model/spring_lists.hpp"
@@ -308,6 +309,7 @@ class MassSpring final : public CapableSystem {
   void force_rate(const At& at, MutableVec rate) const override { driven_.force_rate(at, rate); }
   std::vector<Corner> corners() const override { return driven_.corners(); }
 
+  const Constraints* constraints() const override { return rods_.empty() ? nullptr : &rods_; }
   const Switching* switching() const override { return switches_.empty() ? nullptr : this; }
   Index phase_count() const override { return switches_.count(); }
   std::optional<int> order_of_slack() const override { return switches_.order_of_slack(); }
@@ -363,6 +365,7 @@ class MassSpring final : public CapableSystem {
         layout_(std::move(layout)),
         driven_(network, layout_),
         switches_(network, layout_),
+        rods_(network, layout_, driven_),
         weight_(weights(network, layout_)),
         constant_energy_(network.constant_energy),
         air_damping_(network.air_damping) {
@@ -513,7 +516,7 @@ class MassSpring final : public CapableSystem {
     note(network.image_links);
     note(network.anchors);
     note(network.general);
-    linear_ = linear_ && switches_.empty();
+    linear_ = linear_ && switches_.empty() && rods_.empty();
   }
 
   void offer_split(const Network& network, Forces forces) {
@@ -621,6 +624,7 @@ class MassSpring final : public CapableSystem {
   Layout<D> layout_;
   DrivenNetwork<D> driven_;
   Switches<D> switches_;
+  Rods<D> rods_;
   InTension<D> in_tension_;              // springs that hold in tension only, once more
   Vec weight_;                           // M g + load [N]
   Curves none_;                          // of a network that is not driven

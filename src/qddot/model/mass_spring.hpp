@@ -43,14 +43,22 @@ struct Network {
     int direction = 0;
     int curve = -1;  // of `curves`; -1: it is fixed
   };
-  // A spring whose law is not plain (SpringLaw::is_plain): between two different free nodes, or to
-  // a point where j < 0. `number`: that of its phase, see At::phases.
+  // A spring whose law is not plain (SpringLaw::is_general): between two different free nodes, or
+  // to a point where j < 0. `number`: that of its phase, see At::phases.
   struct General {
     int i, j;
     Eigen::Vector3d point;
     SpringLaw law;
     bool stiff = false;
     int curve = -1, number = 0;
+  };
+  // A rod between two different free nodes, or from node i to a point where j < 0. Networks with
+  // rods have no zero coordinates.
+  struct Rod {
+    int i, j;
+    Eigen::Vector3d point;
+    double length;  // [m], > 0
+    int curve = -1;
   };
   // A force factor curve(t) on a node [N], with V = -force.(x - origin).
   struct DrivenLoad {
@@ -67,6 +75,7 @@ struct Network {
   double constant_energy = 0;  // [J], of all that does not move
   std::vector<ImageLink> image_links{};
   std::vector<General> general{};
+  std::vector<Rod> rods{};
   // Bit d of a node is set if its coordinate d stays zero and is no unknown; empty if there are
   // none.
   std::vector<unsigned> zero_coordinates{};
@@ -90,9 +99,9 @@ enum class Forces { spring_by_spring, by_vectors, whichever_is_faster };
 // f and K are sums over springs (see spring.hpp). K has a block for each node and for each pair of
 // nodes that a link joins. It is constant if every law is linear or every spring has a direction.
 // If any spring has a dashpot, or there is air, the force is that of positions minus C(q) v, and
-// the system offers Damping. Throws std::invalid_argument for directions in two or three dimensions
-// or beside a quartic term. It does so too if some springs with a rest length have one and others
-// have none.
+// the system offers Damping. With rods it offers Constraints. Throws std::invalid_argument for
+// directions in two or three dimensions or beside a quartic term. It does so too if some springs
+// with a rest length have one and others have none.
 //
 // K's pattern, and what K is summed from, are made when somebody first asks for K, by any thread.
 // So the first such question takes longer than the later ones.

@@ -19,6 +19,7 @@ inline Network half_of_split(Network network, bool stiff) {
     network.driven_loads.clear();
     network.constant_energy = 0;
   }
+  network.rods.clear();
   network.offers_split = false;
   return network;
 }

@@ -54,11 +54,16 @@ struct SpringLaw {
   // The strain (l - l0)/l0 > 0 at which it breaks.
   double breaks_at = std::numeric_limits<double>::infinity();
   bool pulls_only = false;
+  // Whether it is a rod: its length stays l0 > 0, and the other numbers are zero. A rod has no
+  // energy and no force of its own; multipliers keep its length (see Constraints).
+  bool rigid = false;
 
   // A cable of rest length zero is never slack.
   bool goes_slack() const { return pulls_only && rest_length > 0; }
   bool can_break() const { return std::isfinite(breaks_at); }
-  bool is_plain() const { return cubic == 0 && !goes_slack() && !can_break(); }
+  bool is_plain() const { return cubic == 0 && !goes_slack() && !can_break() && !rigid; }
+  // Whether it is a spring that is not plain.
+  bool is_general() const { return !is_plain() && !rigid; }
   PlainLaw plain() const { return {stiffness, rest_length, quartic, damping}; }
   // Whether the force is linear in the difference of the spring's ends.
   bool is_linear() const { return rest_length == 0 && quartic == 0 && cubic == 0 && !can_break(); }

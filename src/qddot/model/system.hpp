@@ -122,6 +122,7 @@ class Kinks;
 class Damping;
 class Driving;
 class Switching;
+class Constraints;
 struct Split;
 
 // A mechanical system with the Lagrangian L = T - V, T = 1/2 v'Mv, as in the lecture. It gives M,
@@ -186,7 +187,8 @@ class System {
   virtual bool stiffness_is_constant() const { return false; }
 
   // Capabilities, each nullptr or empty if the system lacks it; see capabilities.hpp. A class that
-  // implements one returns `this`; a wrapper has those of the systems in it.
+  // implements one returns `this`; a wrapper has those of the systems in it. A system of blocks has
+  // no Constraints; each of its blocks may.
   virtual const SplitStiffness* split_stiffness() const { return nullptr; }
   virtual const DiscreteGradient* discrete_gradient() const { return nullptr; }
   virtual const Laplacian* laplacian() const { return nullptr; }
@@ -196,6 +198,7 @@ class System {
   virtual const Damping* damping() const { return nullptr; }
   virtual const Driving* driving() const { return nullptr; }
   virtual const Switching* switching() const { return nullptr; }
+  virtual const Constraints* constraints() const { return nullptr; }
   // The stiff and the soft forces. A system of blocks has none; each of its blocks may.
   virtual const Split* split() const { return nullptr; }
   // The systems that no force couples, in order, each with a run of consecutive unknowns of its
@@ -209,6 +212,13 @@ class System {
 // Kinetic plus potential energy [J] of a state.
 inline double total_energy(const System& system, const State& state) {
   return system.kinetic(state.v) + system.potential(state);
+}
+
+// Whether the system, or a block of it, has Constraints.
+inline bool is_constrained(const System& system) {
+  return system.constraints() || std::ranges::any_of(system.blocks(), [](const auto& block) {
+           return is_constrained(*block);
+         });
 }
 
 // Throws std::invalid_argument if the system computes no K.

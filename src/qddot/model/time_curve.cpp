@@ -110,6 +110,26 @@ Vector TimeCurve::rate(double t, double within) const {
   return sum;
 }
 
+Vector TimeCurve::acceleration(double t, double within) const {
+  Vector sum = Vector::Zero();
+  for (std::size_t k = polynomial.size(); k-- > 2;) {
+    sum = static_cast<double>(k * (k - 1)) * polynomial[k] + t * sum;
+  }
+  for (const Harmonic& one : harmonics) {
+    sum -= one.frequency * one.frequency * std::sin(one.frequency * t + one.phase) * one.amplitude;
+  }
+  for (const PiecewiseCubic& table : tables) sum += table.derivatives(t, within)[2];
+  // Differences over h and 2 h, without the error of h^2 (Richardson).
+  const double h = 1e-3 * std::max(1e-3, std::abs(t));
+  for (const Own& function : own) {
+    const auto slope = [&](double s) -> Vector {
+      return (function.rate(t + s) - function.rate(t - s)) / (2 * s);
+    };
+    sum += (4 * slope(h) - slope(2 * h)) / 3;
+  }
+  return sum;
+}
+
 std::vector<Corner> TimeCurve::corners() const {
   constexpr int of_a_line = 1, of_a_spline = 3;
   std::vector<Corner> all;

@@ -77,6 +77,9 @@ struct TimeCurve {
   // The same on the pieces of tables that `within` is in, continued.
   Vector at(double t, double within) const;
   Vector rate(double t, double within) const;
+  // The second derivative; for functions of the caller's own a difference of rates, right to about
+  // ten digits.
+  Vector acceleration(double t, double within) const;
   // The corners of its tables, ascending in each table.
   std::vector<Corner> corners() const;
   // Adds a constant.

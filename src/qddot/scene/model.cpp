@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "qddot/algebra/constraint_forces.hpp"
 #include "qddot/scene/reduce/pieces.hpp"
 #include "qddot/scene/reduce/start_check.hpp"
 
@@ -185,6 +186,11 @@ double Model::driven(const State& state) const {
 }
 
 const std::vector<std::size_t>& Model::general_springs() const { return pieces_->general; }
+const std::vector<std::size_t>& Model::rods() const { return pieces_->rods; }
+
+Vec Model::tensions(const State& state) const {
+  return ConstraintForces(*pieces_->system).at(state);
+}
 
 std::vector<std::size_t> Model::massless_nodes() const {
   std::vector<std::size_t> massless;

@@ -83,6 +83,11 @@ class Model {
   // their phases; see Switching.
   const std::vector<std::size_t>& general_springs() const;
 
+  // The scene's numbers of the rods, and the tension of each [N] in `state`: the multipliers that
+  // keep their lengths with the forces and velocities there. NaN where the rods are singular.
+  const std::vector<std::size_t>& rods() const;
+  Vec tensions(const State& state) const;
+
   // Massless nodes that have unknowns, ascending: most methods cannot run them.
   std::vector<std::size_t> massless_nodes() const;
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/rods.hpp"
 
 namespace qddot {
 namespace {
@@ -258,6 +259,7 @@ void validate(const Scene& scene, const std::string& source) {
     check_spring({source, "springs", i}, scene.springs[i], scene.nodes);
   check_loads(source, scene);
   check_curves(source, scene);
+  validate_rods(scene, source);
   for (std::size_t i = 0; i < scene.faces.size(); ++i)
     check_face({source, "faces", i}, scene.faces[i], scene.nodes.size());
 }
@@ -298,6 +300,7 @@ std::string content_hash(const Scene& scene) {
     hash.add(spring.law.cubic);
     hash.add(spring.law.breaks_at);
     hash.add(std::uint64_t(spring.law.goes_slack()));
+    if (spring.law.rigid) hash.add(std::uint64_t(2));
   }
   // Likewise what changes with time.
   if (is_driven(scene)) {

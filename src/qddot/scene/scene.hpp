@@ -104,7 +104,8 @@ std::vector<bool> nodes_on_springs(const Scene& scene);
 //   above 0; strains at which springs break are above 0, and such springs and cables have no
 //   massless node; each spring joins two different existing nodes, which are apart if its
 //   rest_length > 0 (else it has no direction); a node with a load has mass, a pin, or a spring
-//   that pulls; each face has three different existing nodes.
+//   that pulls; each face has three different existing nodes; rods are as validate_rods (rods.hpp)
+//   says.
 void validate(const Scene& scene, const std::string& source);
 
 // A hash of everything in the scene that decides its motion, so not of its name; the same on every

@@ -14,6 +14,7 @@
 #include "qddot/scene/mesh/mesh.hpp"
 #include "qddot/scene/mesh/mesh_scene.hpp"
 #include "qddot/scene/node_choice.hpp"
+#include "qddot/scene/rods.hpp"
 #include "qddot/scene/toml_table.hpp"
 
 namespace qddot {
@@ -52,6 +53,14 @@ Spring spring_in(const TomlTable& table, const std::vector<Node>& nodes) {
                   .pulls_only = table.flag_or_false("pulls_only")}};
 }
 
+Spring rod_in(const TomlTable& table, const std::vector<Node>& nodes) {
+  table.allow_keys({"nodes", "length"});
+  const auto [i, j] = table.node_pair("nodes", nodes.size());
+  const double distance = (nodes[j].position - nodes[i].position).norm();
+  return {.nodes = {i, j},
+          .law = {.rest_length = table.number_or(distance, "length", positive), .rigid = true}};
+}
+
 // The keys of [mesh] and of [generator] that are for each of its springs.
 void set_laws(const TomlTable& table, Scene& scene) {
   const double breaks_at = table.number_or(never, "breaks_at", positive);
@@ -64,14 +73,17 @@ void set_laws(const TomlTable& table, Scene& scene) {
 
 void add_nodes_and_springs(const TomlTable& file, const SceneLimits& limits,
                            const CurveReader& curves, Scene& scene) {
-  file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "air_damping",
-                   "damping_time", "gravity_in_time", "curves", "nodes", "springs"});
-  const std::vector<TomlTable> nodes = file.tables("nodes"), springs = file.tables("springs");
-  require_within(limits, {nodes.size(), springs.size()}, file.place());
+  file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "rods_above",
+                   "air_damping", "damping_time", "gravity_in_time", "curves", "nodes", "springs",
+                   "rods"});
+  const std::vector<TomlTable> nodes = file.tables("nodes"), springs = file.tables("springs"),
+                               rods = file.tables("rods");
+  require_within(limits, {nodes.size(), springs.size() + rods.size()}, file.place());
   for (const TomlTable& table : nodes)
     scene.nodes.push_back(node_in(table, scene.dimension, curves));
   if (scene.nodes.empty()) file.refuse("nodes", "lists of at least one node");
   for (const TomlTable& table : springs) scene.springs.push_back(spring_in(table, scene.nodes));
+  for (const TomlTable& table : rods) scene.springs.push_back(rod_in(table, scene.nodes));
 }
 
 // The keys of a scene, of [mesh] and of [generator]. One in the table is for the whole scene.
@@ -192,12 +204,12 @@ Scene parse_scene(const std::string& text, const std::string& path,
   require_one_origin(file);
   Scene scene;
   if (file.has("generator")) {
-    file.allow_keys({"name", "until", "start", "stiff_above", "air_damping", "damping_time",
-                     "gravity_in_time", "curves", "generator"});
+    file.allow_keys({"name", "until", "start", "stiff_above", "rods_above", "air_damping",
+                     "damping_time", "gravity_in_time", "curves", "generator"});
     scene = generated(file, file.table("generator"), limits);
   } else if (file.has("mesh")) {
-    file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "air_damping",
-                     "damping_time", "gravity_in_time", "curves", "mesh"});
+    file.allow_keys({"name", "dimension", "gravity", "until", "start", "stiff_above", "rods_above",
+                     "air_damping", "damping_time", "gravity_in_time", "curves", "mesh"});
     if (file.has("dimension")) file.integer("dimension", 3, 3);
     const CurveReader curves(file, scene);
     scene.gravity_curve = curves.read(file, "gravity_in_time");
@@ -214,6 +226,7 @@ Scene parse_scene(const std::string& text, const std::string& path,
   if (file.has("until")) scene.until = file.number("until", positive);
   if (file.has("gravity")) scene.gravity = file.vector("gravity", scene.dimension);
   if (file.has("stiff_above")) scene.stiff_above = file.number("stiff_above", positive);
+  if (file.has("rods_above")) make_rods_above(file.number("rods_above", positive), scene);
   scene.starts_at_equilibrium = starts_at_equilibrium(file);
   add_damping(file, scene);
   validate(scene, path);

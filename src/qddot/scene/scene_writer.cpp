@@ -158,6 +158,7 @@ void add_curve(const TimeCurve& curve, int number, int dimension, TomlText& out)
 }
 
 void add_spring(const Spring& spring, TomlText& out) {
+  if (spring.law.rigid) return;
   out.add(fmt::format("\n[[springs]]\nnodes = [{}, {}]\n", spring.nodes[0], spring.nodes[1]));
   out.line("stiffness", spring.law.stiffness);
   out.line("rest_length", spring.law.rest_length);
@@ -166,6 +167,12 @@ void add_spring(const Spring& spring, TomlText& out) {
   if (!is_plain_zero(spring.law.cubic)) out.line("cubic", spring.law.cubic);
   if (spring.law.can_break()) out.line("breaks_at", spring.law.breaks_at);
   if (spring.law.pulls_only) out.add("pulls_only = true\n");
+}
+
+void add_rod(const Spring& spring, TomlText& out) {
+  if (!spring.law.rigid) return;
+  out.add(fmt::format("\n[[rods]]\nnodes = [{}, {}]\n", spring.nodes[0], spring.nodes[1]));
+  out.line("length", spring.law.rest_length);
 }
 
 // A file has no functions of the caller's own, and one table a curve.
@@ -205,9 +212,11 @@ std::string to_toml(const Scene& scene, std::size_t most) {
     add_node(node, scene.dimension, out);
     require_readable();
   }
-  for (const Spring& spring : scene.springs) {
-    add_spring(spring, out);
-    require_readable();
+  for (const auto add : {add_spring, add_rod}) {
+    for (const Spring& spring : scene.springs) {
+      add(spring, out);
+      require_readable();
+    }
   }
   return out.text();
 }

@@ -14,6 +14,17 @@ std::vector<double> mirrored(std::vector<double> half, std::size_t size) {
   return half;
 }
 
+Splitting verlet_composition(int order, const std::vector<double>& gamma) {
+  std::vector<double> kicks;
+  double before = 0;
+  for (const double g : gamma) {
+    kicks.push_back((before + g) / 2);
+    before = g;
+  }
+  kicks.push_back(before / 2);
+  return {.order = order, .kicks = kicks, .drifts = gamma};
+}
+
 KickDrift::KickDrift(SystemRun& run, const Splitting& splitting)
     : Formula(run),
       splitting_(splitting),

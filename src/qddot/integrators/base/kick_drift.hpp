@@ -19,6 +19,9 @@ struct Splitting {
 // The palindrome of `size` numbers with the given first half and middle.
 std::vector<double> mirrored(std::vector<double> half, std::size_t size);
 
+// The composition of velocity Verlet steps of the sizes gamma_i h.
+Splitting verlet_composition(int order, const std::vector<double>& gamma);
+
 // The steps of a splitting. If a kick is first, the last force of a step is the first of the next:
 // one evaluation for each drift, and one at the start. Otherwise each kick takes one evaluation.
 // Each kick is done in one pass over the vectors with the drift after it. So one that ends a step

@@ -16,7 +16,8 @@ void keep(Extreme& extreme, double value, double t, double sign) {
 
 }  // namespace
 
-Strains::Strains(const Scene& scene, const Model& model) : scene_(scene), model_(model) {
+Strains::Strains(const Scene& scene, const Model& model)
+    : scene_(scene), model_(model), rods_(model.system()) {
   constexpr double none = std::numeric_limits<double>::infinity();
   const SpringExtremes unseen{{-none, 0}, {none, 0}, {-none, 0}, {none, 0}};
   extremes_.assign(scene.springs.size(), unseen);
@@ -29,7 +30,7 @@ void Strains::see(const State& state) {
   const bool is_start = before_.empty();
   const double h = state.t - t_before_;
   for (std::size_t e = 0; e < scene_.springs.size(); ++e) {
-    if (is_broken_[e]) continue;
+    if (is_broken_[e] || scene_.springs[e].law.rigid) continue;
     const auto [a, b] = scene_.springs[e].nodes;
     const auto apart = [&](const std::vector<Node>& nodes, Eigen::Vector3d Node::*which) {
       return Eigen::Vector3d(nodes[b].*which - nodes[a].*which);
@@ -56,7 +57,21 @@ void Strains::see(const State& state) {
       if ((*state.phases)[k] == Phase::broken) is_broken_[general[k]] = true;
     }
   }
+  see_rods(state);
   t_before_ = state.t;
+}
+
+void Strains::see_rods(const State& state) {
+  const std::vector<std::size_t>& rods = model_.rods();
+  if (rods.empty()) return;
+  const Vec& tensions = rods_.at(state);
+  for (std::size_t k = 0; k < rods.size(); ++k) {
+    SpringExtremes& own = extremes_[rods[k]];
+    keep(own.largest_tension, tensions[static_cast<Index>(k)], state.t, 1);
+    keep(own.smallest_tension, tensions[static_cast<Index>(k)], state.t, -1);
+    keep(own.largest_strain, 0, state.t, 1);
+    keep(own.smallest_strain, 0, state.t, -1);
+  }
 }
 
 void Strains::see_spring(std::size_t e, double t, const Eigen::Vector3d& d,

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "qddot/algebra/constraint_forces.hpp"
 #include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
@@ -19,7 +20,8 @@ struct SpringExtremes {
 
 // Watches the strains and tensions of all springs of a scene on the way of a run. Between two steps
 // each spring follows the cubic in time through the places and velocities of its ends, which has
-// an error of order 4.
+// an error of order 4. Rods have the strain zero, and the tensions of their multipliers at the ends
+// of steps alone.
 class Strains {
  public:
   // Borrows both, which must outlive it. `scene`: the one that the model is the reduction of.
@@ -31,6 +33,7 @@ class Strains {
   const std::vector<SpringExtremes>& extremes() const { return extremes_; }
 
  private:
+  void see_rods(const State& state);
   void see_spring(std::size_t e, double t, const Eigen::Vector3d& d, const Eigen::Vector3d& rate);
 
   const Scene& scene_;
@@ -39,6 +42,7 @@ class Strains {
   double t_before_ = 0;
   std::vector<SpringExtremes> extremes_;
   std::vector<bool> is_broken_;
+  ConstraintForces rods_;
 };
 
 }  // namespace qddot::inline measure

@@ -7,6 +7,7 @@
 #include <boost/numeric/odeint.hpp>
 #include <fmt/format.h>
 
+#include "qddot/algebra/multipliers.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/breaks.hpp"
 #include "qddot/measure/motion/deadline.hpp"
@@ -54,6 +55,9 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
   const Vec start = q, per_mass = system.mass().cwiseInverse();
   const Damping* damping = system.damping();
   const Driving* driving = system.driving();
+  const Constraints* constraints = system.constraints();
+  Multipliers multipliers(system);
+  Vec moving(multipliers.count());
   const double energy = system.mass().sum() * speed * speed;  // unit of work
   const double until = piece.end - piece.start;
   Vec now(n), fast(n), f(n), friction(n);
@@ -77,6 +81,18 @@ bool fehlberg_step_by_step(const System& system, Eigen::Ref<Vec> q, Eigen::Ref<V
       const Work power = driving->driving_power(in_piece({now_t, now, fast}));
       dy[2 * n] = ((damping ? -friction.dot(fast) : 0) + power.dissipated) / energy;
       dy[2 * n + 1] = power.driven / energy;
+    }
+    if (constraints) {
+      // The forces that keep constraints, as functions of places and velocities (index 1).
+      const At at = in_piece({now_t, now, fast});
+      multipliers.take_gradients(at);
+      multipliers.factorize();
+      const Vec& lambda = multipliers.forces_at(at, f);
+      f -= multipliers.gradients().transpose() * lambda;
+      if (driving) {
+        constraints->constraint_rates(at, moving);
+        dy[2 * n + 1] += lambda.dot(moving) / energy;
+      }
     }
     Eigen::Map<Vec>(dy.data(), n) = (speed / length) * w;
     Eigen::Map<Vec>(dy.data() + n, n) = per_mass.cwiseProduct(f) / speed;
@@ -138,6 +154,7 @@ std::optional<Solution> seen_run(const Model& scene, const Method& method, const
 }
 
 const Method& resolving_method(const System& system) {
+  if (is_constrained(system)) return *find_method("rattle8");
   const Method& composed = *find_method("kahan_li8");
   return applies_to(composed, system) ? composed : *find_method("rk8");
 }

@@ -61,7 +61,13 @@ void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
   const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
   const int i = numbers[from], j = numbers[to];
   const Eigen::Vector3d signs = mirror.diagonal();
-  if (!law.is_plain()) {  // of a part without mirrors
+  if (law.rigid) {  // in a part without mirrors
+    const std::size_t pin = i == no_number ? from : to;
+    const bool is_anchor = i == no_number || j == no_number;
+    network.rods.push_back({i == no_number ? j : i, is_anchor ? -1 : j,
+                            is_anchor ? half.y[pin] : Eigen::Vector3d(Eigen::Vector3d::Zero()),
+                            law.rest_length, is_anchor ? curves.of_node(pin, signs) : -1});
+  } else if (!law.is_plain()) {  // likewise
     const std::size_t pin = i == no_number ? from : to;
     const bool is_anchor = i == no_number || j == no_number;
     network.general.push_back({i == no_number ? j : i, is_anchor ? -1 : j,
@@ -113,13 +119,14 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   if (reductions.has(Reduction::mirror) && drawn.springs.are_plain())
     mirrors_ = mirrors_of(drawn, frame);
 
-  const bool with_pins = !reductions.has(Reduction::pins) && !has_moving_pins(drawn);
+  const bool with_pins =
+      !reductions.has(Reduction::pins) && !has_moving_pins(drawn) && !drawn.springs.have_rods();
   make_network(drawn, dimension, with_pins);
   network_.uses_constant_stiffness = reductions.has(Reduction::constant_stiffness);
   network_.offers_split = drawn.offers_split;
   // That none turns over is proven by energy, which driving changes.
   if (network_.uses_constant_stiffness && !with_pins && !drawn.is_driven() &&
-      network_.general.empty()) {
+      network_.general.empty() && network_.rods.empty()) {
     if (auto straight = straightened(network_, initial_.q, initial_.v, is_loaded_)) {
       network_ = std::move(*straight);
       is_straightened_ = true;
@@ -207,7 +214,8 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
     add_spring(spring, half, numbers, curves, network);
   });
   for (int e = 0; e < drawn.springs.size(); ++e) {
-    if (!drawn.springs.law(e).is_plain()) general_.push_back(drawn.springs.number(e));
+    if (drawn.springs.law(e).is_general()) general_.push_back(drawn.springs.number(e));
+    if (drawn.springs.law(e).rigid) rods_.push_back(drawn.springs.number(e));
   }
 }
 

@@ -54,6 +54,8 @@ class Part {
   // The numbers, in the list that its springs were drawn from, of those that are not plain, in the
   // order of their phases (Switching).
   const std::vector<int>& general() const { return general_; }
+  // The numbers of its rods, in the order of its system's constraints.
+  const std::vector<int>& rods() const { return rods_; }
   bool is_loaded() const { return is_loaded_; }
   // Whether K is constant though springs on a line have rest lengths (see straight.hpp).
   bool is_straightened() const { return is_straightened_; }
@@ -119,6 +121,7 @@ class Part {
   std::vector<Image> images_;     // likewise
   std::vector<Unknowns> layout_;  // of the originals
   std::vector<int> general_;      // springs
+  std::vector<int> rods_;         // likewise
   Network network_;               // until the system is made of it
   std::vector<bool> is_held_;
   std::unique_ptr<System> system_;

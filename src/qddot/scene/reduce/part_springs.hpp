@@ -44,6 +44,11 @@ class PartSprings {
     return std::ranges::all_of(
         chosen_, [&](int e) { return (*all_)[static_cast<std::size_t>(e)].law.is_plain(); });
   }
+  // Whether one of them is a rod.
+  bool have_rods() const {
+    return std::ranges::any_of(
+        chosen_, [&](int e) { return (*all_)[static_cast<std::size_t>(e)].law.rigid; });
+  }
   // Begins to load a law that is read some time later. Springs are read out of order by mirrors,
   // and most of the time would go into waiting for memory.
   void prefetch(int e) const { __builtin_prefetch(&drawn(e).law); }

@@ -54,6 +54,8 @@ struct Pieces {
   std::vector<DrivenSpring> driven_springs{};
   // The scene's numbers of the springs that are not plain, by the numbers of their phases.
   std::vector<std::size_t> general{};
+  // The scene's numbers of the rods, in the order of parts and of their constraints.
+  std::vector<std::size_t> rods{};
   std::vector<TimeCurve> curves{};  // of the scene
   std::shared_ptr<const System> system{};
   // [J], of springs between pinned nodes that rest, and of the parts' origins.

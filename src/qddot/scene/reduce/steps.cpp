@@ -11,6 +11,7 @@
 #include "qddot/scene/reduce/pieces.hpp"
 #include "qddot/scene/reduce/springs.hpp"
 #include "qddot/scene/reduce/words.hpp"
+#include "qddot/scene/rods.hpp"
 
 namespace qddot::reduce {
 namespace {
@@ -75,7 +76,8 @@ Pieces Steps::taken() {
     node.velocity = curve.rate(0);
     pieces_.moving.push_back({i, curve});
   }
-  if (reductions_.has(Reduction::pins) || !pieces_.moving.empty()) leave_out_pins();
+  if (reductions_.has(Reduction::pins) || !pieces_.moving.empty() || has_rods(scene_))
+    leave_out_pins();
   name_stiff();
   if (reductions_.has(Reduction::duplicates)) merge();
   if (reductions_.has(Reduction::massless)) condense();
@@ -136,19 +138,26 @@ void Steps::leave_out_static_springs() {
 
 // Steps keep the order of springs that are not plain, and change none of them.
 void Steps::note_general(const Part& part) {
-  if (part.general().empty()) return;
-  const auto of = [](const std::vector<Spring>& all) {
-    std::vector<std::size_t> numbers;
-    for (std::size_t e = 0; e < all.size(); ++e) {
-      if (!all[e].law.is_plain()) numbers.push_back(e);
+  const auto note = [&](const std::vector<int>& own, bool (*is_of_kind)(const SpringLaw&),
+                        std::vector<std::size_t>& numbers) {
+    if (own.empty()) return;
+    const auto of = [&](const std::vector<Spring>& all) {
+      std::vector<std::size_t> found;
+      for (std::size_t e = 0; e < all.size(); ++e) {
+        if (is_of_kind(all[e].law)) found.push_back(e);
+      }
+      return found;
+    };
+    const std::vector<std::size_t> now = of(springs()), drawn = of(scene_.springs);
+    for (const int e : own) {
+      const auto place = std::ranges::lower_bound(now, static_cast<std::size_t>(e));
+      numbers.push_back(drawn[static_cast<std::size_t>(place - now.begin())]);
     }
-    return numbers;
   };
-  const std::vector<std::size_t> now = of(springs()), drawn = of(scene_.springs);
-  for (const int e : part.general()) {
-    const auto place = std::ranges::lower_bound(now, static_cast<std::size_t>(e));
-    pieces_.general.push_back(drawn[static_cast<std::size_t>(place - now.begin())]);
-  }
+  note(
+      part.general(), [](const SpringLaw& law) { return law.is_general(); }, pieces_.general);
+  note(
+      part.rods(), [](const SpringLaw& law) { return law.rigid; }, pieces_.rods);
 }
 
 std::vector<PartMembers> Steps::divide() {
