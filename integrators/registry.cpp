@@ -77,6 +77,8 @@
   METHOD(arkode_trbdf2)            \
   METHOD(ida)                      \
   METHOD(ida_klu)                  \
+  METHOD(ida_rods)                 \
+  METHOD(arkode_erk8_rods)         \
   METHOD(cvode_bdf)                \
   METHOD(cvode_bdf_klu)            \
   METHOD(cvode_adams)              \

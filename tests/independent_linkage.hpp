@@ -264,15 +264,17 @@ inline void LinkageMotion::find_tensions() {
     if (moves(i)) pulls.col(index(r)).segment(3 * index(i), 3) = n;
     if (moves(j)) pulls.col(index(r)).segment(3 * index(j), 3) = -n;
   }
-  Points missing = -forces(t_, x_, v_);
-  for (Eigen::Index i = 0; i < x_.cols(); ++i) {
-    missing.col(i) += Real(node(i).mass) * a_.col(i);
-    if (node(i).pinned) missing.col(i).setZero();
+  const Points f = forces(t_, x_, v_);
+  Points missing = Points::Zero(3, x_.cols());
+  Real size = std::numeric_limits<Real>::min();
+  for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
+    if (!moves(i)) continue;
+    missing.col(index(i)) = Real(scene_.nodes[i].mass) * a_.col(index(i)) - f.col(index(i));
+    size = std::max({size, f.col(index(i)).norm(), missing.col(index(i)).norm()});
   }
   const Vector all = missing.reshaped();
   const Vector solved = pulls.householderQr().solve(all);
   for (std::size_t r = 0; r < rods.size(); ++r) tensions_[index(rods[r])] = solved[index(r)];
-  const Real size = std::max(all.cwiseAbs().maxCoeff(), std::numeric_limits<Real>::min());
   unexplained_ = (all - pulls * solved).cwiseAbs().maxCoeff() / size;
 }
 

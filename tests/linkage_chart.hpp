@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <deque>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -13,36 +12,10 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "qddot/scene/scene.hpp"
+#include "tests/linkage_curves.hpp"
 
 namespace qddot {
 inline namespace tests {
-
-// Whether the node is a support that nothing moves but its curve.
-inline bool is_support(const qddot::Node& node) { return node.pinned; }
-
-// The value and the first two derivatives of a curve's polynomial and harmonics. Throws
-// std::invalid_argument if it has other terms.
-inline Eigen::Matrix<long double, 3, 3> curve_and_rates(const TimeCurve& curve, long double t) {
-  if (!curve.tables.empty() || !curve.own.empty())
-    throw std::invalid_argument("the independent linkage knows polynomials and harmonics only");
-  Eigen::Matrix<long double, 3, 3> all = Eigen::Matrix<long double, 3, 3>::Zero();
-  for (std::size_t k = 0; k < curve.polynomial.size(); ++k) {
-    const auto c = curve.polynomial[k].cast<long double>();
-    const auto n = static_cast<long double>(k);
-    all.col(0) += c * std::pow(t, n);
-    if (k >= 1) all.col(1) += c * n * std::pow(t, n - 1);
-    if (k >= 2) all.col(2) += c * n * (n - 1) * std::pow(t, n - 2);
-  }
-  for (const TimeCurve::Harmonic& one : curve.harmonics) {
-    const auto a = one.amplitude.cast<long double>();
-    const long double w = one.frequency, angle = w * t + one.phase;
-    all.col(0) += a * std::sin(angle);
-    all.col(1) += a * (w * std::cos(angle));
-    all.col(2) -= a * (w * w * std::sin(angle));
-  }
-  return all;
-}
 
 // Coordinates of point masses that rods join, in long double. A spanning forest of rods hangs from
 // supports and free roots. Directions of its rods and positions of its roots are coordinates, whose
@@ -109,7 +82,12 @@ class LinkageChart {
   Matrix gap_slopes() const;
   bool close(Vector& u);
   void choose_dependents();
-  Vector part(const Vector& u, const std::vector<Index>& own) const { return u(own); }
+  void follow(const Vector& u, Vector& u_rate);
+  // The component of a difference between the ends of a rod along it.
+  Real along(const Closure& rod, const Points& y) const {
+    const Index i = column(rod.i), j = column(rod.j);
+    return (x_.col(j) - x_.col(i)).dot(y.col(j) - y.col(i)) / rod.length;
+  }
   // The own rows of the node in a matrix of all nodes.
   static Index row(std::size_t node) { return 3 * static_cast<Index>(node); }
   static Index column(std::size_t node) { return static_cast<Index>(node); }
@@ -187,7 +165,7 @@ inline void LinkageChart::add_rods_of(const Scene& scene, std::size_t node,
   }
 }
 
-// Where supports are at t, and their first two derivatives.
+// The positions of supports at t, and their first two derivatives.
 inline void LinkageChart::set_supports(Real t) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (!is_support(nodes_[i])) continue;
@@ -335,7 +313,7 @@ inline bool LinkageChart::center(Real t, const Points& x, const Points& v) {
   }
   place(u);
   choose_dependents();
-  rates_ = part(rate, independent_);
+  rates_ = rate(independent_);
   return conditioning_ > singular;
 }
 
@@ -362,42 +340,44 @@ inline void LinkageChart::choose_dependents() {
 
 inline bool LinkageChart::move_to(Real t, const Vector& w, const Vector& rate) {
   set_supports(t);
-  Vector u = Vector::Zero(tree_size_), u_rate = u, u_bend = u;
+  Vector u = Vector::Zero(tree_size_), u_rate = u;
   u(independent_) = w;
   u_rate(independent_) = rate;
   if (!close(u)) return false;
   for (const Branch& branch : branches_) {
-    if (branch.kind != Branch::link || dimension_ == 1) continue;
+    if (branch.kind != Branch::link) continue;
     if (!(u.segment(branch.first, dimension_ - 1).norm() < largest_turn)) return false;
   }
   slopes_ = j_(Eigen::all, independent_);
   if (closures_.empty()) {
     move(u, u_rate);
+    bend_ = a_.reshaped();
   } else {
-    const Matrix gap_slope = gap_slopes();
-    const auto factors = gap_slope(Eigen::all, dependent_).partialPivLu();
-    const Matrix follow = -factors.solve(gap_slope(Eigen::all, independent_));
-    slopes_ += j_(Eigen::all, dependent_) * follow;
-    // The rates of gaps by supports alone, then their second derivatives with straight coordinates.
-    Vector gap_rate(std::ssize(closures_));
-    const auto along = [&](const Closure& one, const Points& y) {
-      return (x_.col(column(one.j)) - x_.col(column(one.i)))
-                 .dot(y.col(column(one.j)) - y.col(column(one.i))) /
-             one.length;
-    };
-    for (std::size_t c = 0; c < closures_.size(); ++c)
-      gap_rate[column(c)] = along(closures_[c], carried_);
-    u_rate(dependent_) = follow * rate - factors.solve(gap_rate);
-    move(u, u_rate);
-    for (std::size_t c = 0; c < closures_.size(); ++c) {
-      const auto& [i, j, length] = closures_[c];
-      gap_rate[column(c)] =
-          along(closures_[c], a_) + (v_.col(column(j)) - v_.col(column(i))).squaredNorm() / length;
-    }
-    u_bend(dependent_) = -factors.solve(gap_rate);
+    follow(u, u_rate);
   }
-  bend_ = j_ * u_bend + a_.reshaped();
   return true;
+}
+
+// Sets velocities, slopes and bend, with the dependent coordinates as closures prescribe.
+inline void LinkageChart::follow(const Vector& u, Vector& u_rate) {
+  const Matrix gap_slope = gap_slopes();
+  const auto factors = gap_slope(Eigen::all, dependent_).partialPivLu();
+  const Matrix by_independent = -factors.solve(gap_slope(Eigen::all, independent_));
+  slopes_ += j_(Eigen::all, dependent_) * by_independent;
+  // Supports alone change the gaps by this.
+  Vector gap_rate(std::ssize(closures_));
+  for (std::size_t c = 0; c < closures_.size(); ++c)
+    gap_rate[column(c)] = along(closures_[c], carried_);
+  u_rate(dependent_) = by_independent * u_rate(independent_) - factors.solve(gap_rate);
+  move(u, u_rate);
+  // The second derivatives of gaps with straight coordinates.
+  for (std::size_t c = 0; c < closures_.size(); ++c) {
+    const auto& [i, j, length] = closures_[c];
+    gap_rate[column(c)] =
+        along(closures_[c], a_) + (v_.col(column(j)) - v_.col(column(i))).squaredNorm() / length;
+  }
+  bend_ = a_.reshaped();
+  bend_ -= j_(Eigen::all, dependent_) * factors.solve(gap_rate);
 }
 
 }  // namespace tests

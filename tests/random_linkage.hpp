@@ -237,7 +237,7 @@ inline void LinkageScenes::add_braced(std::size_t more) {
   }
 }
 
-// Masses on springs alone, beside rods from pin to pin over one mass each.
+// Masses on springs alone, beside others on rods from one pin.
 inline void LinkageScenes::add_beads(std::size_t beads) {
   const std::size_t pin = add(Vector::Zero(), true);
   for (std::size_t k = 0; k < beads; ++k) {
@@ -321,10 +321,15 @@ inline void LinkageScenes::damp_some() {
 // Random velocities, laid on all rods by the independent model; and the end time, by which the
 // motion turns by some radians. False if the start is near a singular position.
 inline bool LinkageScenes::set_velocities() {
-  const double size = is(0.2) ? 0 : uniform(0.5, 3);
-  for (const Spring& spring : scene_.springs) {
-    if (!(spring.law.rigid ? spring.law.rest_length > 0.15 : true)) return false;
-  }
+  // A pin and weights set a motion off by themselves.
+  const bool falls = scene_.nodes[0].pinned && !scene_.gravity.isZero(0);
+  const double size = falls && is(0.3) ? 0 : uniform(0.5, 3);
+  const auto is_short = [](const Spring& spring) {
+    return spring.law.rigid && spring.law.rest_length < 0.15;
+  };
+  const auto is_rod = [](const Spring& spring) { return spring.law.rigid; };
+  if (std::ranges::any_of(scene_.springs, is_short)) return false;
+  if (std::ranges::none_of(scene_.springs, is_rod)) return false;
   for (Node& node : scene_.nodes) {
     if (!node.pinned) node.velocity = vector(size);
   }

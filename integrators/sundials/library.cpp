@@ -18,12 +18,29 @@ constexpr double unlimited = 1e200;
 
 }  // namespace
 
+Library::Library(SystemRun& run, Index length)
+    : Library(run, run.system(), make_context(),
+              [&](SUNContext context) { return make_stock_vector(length, context); }) {}
+
 Library::Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_part)
+    : Library(run, implicit_part, make_context(), [&](SUNContext context) {
+        const Index length = stacked_size(run.system());
+        return make_matrix == make_klu ? make_stock_vector(length, context)
+                                       : make_vector(length, context);
+      }) {
+  if (!make_matrix) return;
+  k_ = implicit_part.stiffness_pattern();
+  if (implicit_part.damping()) c_ = k_;
+  matrix_ = make_matrix(implicit_part, context(), options().solver);
+  matrix_->time_into(clock());
+}
+
+Library::Library(SystemRun& run, const System& implicit_part, Context context,
+                 const MakeVector& make)
     : Formula(run),
       implicit_part_(implicit_part),
-      context_(make_context()),
-      y_(make_matrix == make_klu ? make_stock_vector(stacked_size(system()), context())
-                                 : make_vector(stacked_size(system()), context())),
+      context_(std::move(context)),
+      y_(make(context_.get())),
       atol_(clone(y())),
       per_mass_(system().mass().cwiseInverse()),
       f_(system().size()) {
@@ -33,19 +50,14 @@ Library::Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_
   absolute.v.setConstant(is_given ? options().atol : rtol() * options().speed);
   // Work follows the motion, and decides no step.
   if (has_work(atol())) work(atol()) = unlimited;
-  if (!make_matrix) return;
-  k_ = implicit_part.stiffness_pattern();
-  if (implicit_part.damping()) c_ = k_;
-  matrix_ = make_matrix(implicit_part, context(), options().solver);
-  matrix_->time_into(clock());
 }
 
 double Library::rtol() const { return has_fixed_step() ? newton_rtol : options().rtol; }
 
 void Library::load(const State& state) {
   Halves halves(y());
-  halves.q = state.q;
-  halves.v = state.v;
+  halves.q.head(state.q.size()) = state.q;
+  halves.v.head(state.v.size()) = state.v;
   if (has_work(y())) work(y()) = state.work.dissipated - state.work.driven;
   if (has_matrix()) matrix().begin_run();
 }
@@ -133,7 +145,7 @@ void Library::set_work(const State& from, State& next) {
     const double h = next.t - from.t;
     const Vec q = (from.q + next.q) / 2 + h / 8 * (from.v - next.v);
     const Vec v = 1.5 / h * (next.q - from.q) - (from.v + next.v) / 4;
-    const auto rate = [&](const At& at) { return power(at).driven; };
+    const auto rate = [&](const At& at) { return driving_rate(at); };
     next.work.driven += h / 6 * (rate(from) + 4 * rate({from.t + h / 2, q, v}) + rate(next));
     next.work.dissipated = next.work.driven + taken;
   } else {
@@ -150,8 +162,8 @@ Outcome Library::take(const State& from, double t_stop, State& next) {
   if (has_matrix()) matrix().rethrow();
   if (flag < 0) return failure(flag, from.t);
   const Halves halves(y());
-  next.q = halves.q;
-  next.v = halves.v;
+  next.q = halves.q.head(system().size());
+  next.v = halves.v.head(system().size());
   next.t = t;
   next.work = from.work;
   if (has_work(y())) set_work(from, next);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -31,6 +32,9 @@ class Library : public Formula {
   // of its forces, with the system's unknowns.
   Library(SystemRun& run, MakeMatrix make_matrix, const System& implicit_part);
   Library(SystemRun& run, MakeMatrix make_matrix) : Library(run, make_matrix, run.system()) {}
+  // For a vector of this length with other numbers behind q and behind v, and for a matrix of the
+  // derived class's own.
+  Library(SystemRun& run, Index length);
   virtual ~Library() = default;
 
   void begin(const State& state, State& x);
@@ -54,6 +58,8 @@ class Library : public Formula {
   virtual int take_step(double t_stop, double& t) = 0;
   // The length of all steps from now on [s]; called if the knob is a step size.
   virtual void set_step_size(double) {}
+  // The power that driving gives [W].
+  virtual double driving_rate(const At& at) { return power(at).driven; }
   virtual Cause cause_of(int flag) const = 0;
   virtual std::string flag_name(int flag) const = 0;
 
@@ -118,6 +124,8 @@ class Library : public Formula {
   Outcome failure(Cause cause, const std::string& flag, double t);
 
  private:
+  using MakeVector = std::function<Vector(SUNContext)>;
+  Library(SystemRun& run, const System& implicit_part, Context context, const MakeVector& make);
   // Sets the work of `next` by y.
   void set_work(const State& from, State& next);
   static void keep_words(const char* words, void* self) noexcept;

@@ -90,6 +90,7 @@ inline constexpr auto ARKodeSetPredictorMethod = ARKStepSetPredictorMethod;
 inline constexpr auto ARKodeSetStabilityFn = ARKStepSetStabilityFn;
 inline constexpr auto ARKodeSetStopTime = ARKStepSetStopTime;
 inline constexpr auto ARKodeSetUserData = ARKStepSetUserData;
+inline constexpr auto set_postprocess_step = ARKStepSetPostprocessStepFn;
 inline constexpr auto evolve_erk = ERKStepEvolve;
 inline constexpr auto get_erk_steps = ERKStepGetNumSteps;
 inline constexpr auto set_erk_max_steps = ERKStepSetMaxNumSteps;
@@ -105,6 +106,7 @@ inline constexpr auto ARKodeFree = ARKStepFree;
 inline constexpr auto free_erk = ERKStepFree;
 inline constexpr auto free_mri = MRIStepFree;
 #else
+inline constexpr auto set_postprocess_step = ARKodeSetPostprocessStepFn;
 inline constexpr auto evolve_erk = ARKodeEvolve;
 inline constexpr auto get_erk_steps = ARKodeGetNumSteps;
 inline constexpr auto set_erk_max_steps = ARKodeSetMaxNumSteps;

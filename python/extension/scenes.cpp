@@ -8,6 +8,7 @@
 #include "qddot/scene/drawn_system.hpp"
 #include "qddot/scene/explain.hpp"
 #include "qddot/scene/generators.hpp"
+#include "qddot/scene/rods.hpp"
 #include "qddot/scene/scene_arrays.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "qddot/scene/settle.hpp"
@@ -29,8 +30,9 @@ Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles
                  const Doubles& stiffness, const Indices& pinned, const Given& gravity,
                  const Given& velocities, const Given& load, const Given& rest_length,
                  const Given& quartic, const Given& damping, const Given& cubic,
-                 const Given& breaks_at, const Given& pulls_only, double air_damping,
-                 const py::list& curves, const Indices& curve_of_node, int of_gravity) {
+                 const Given& breaks_at, const Given& pulls_only, const Given& rigid,
+                 double air_damping, const py::list& curves, const Indices& curve_of_node,
+                 int of_gravity) {
   SceneArrays a;
   const auto node = [](std::int64_t number, const char* name) {
     if (number >= 0) return static_cast<std::size_t>(number);
@@ -57,6 +59,7 @@ Scene scene_from(const Doubles& positions, const Indices& springs, const Doubles
   if (cubic) a.cubic = vec_of(*cubic);
   if (breaks_at) a.breaks_at = vec_of(*breaks_at);
   if (pulls_only) a.pulls_only = vec_of(*pulls_only);
+  if (rigid) a.rigid = vec_of(*rigid);
   a.air_damping = air_damping;
   set_curves(curves, curve_of_node, of_gravity, a);
   return scene_of(a);
@@ -235,21 +238,23 @@ void add_scenes(py::module_& module) {
     return shared(generate(generator_named(name), values, name));
   });
   scene.def_static(
-      "from_arrays", [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
-                         const Doubles& stiffness, const Indices& pinned, const Given& gravity,
-                         const Given& velocities, const Given& load, const Given& rest_length,
-                         const Given& quartic, const Given& damping, const Given& cubic,
-                         const Given& breaks_at, const Given& pulls_only, double air_damping,
-                         const std::string& name, std::optional<double> until,
-                         std::optional<double> stiff_above, bool starts_at_equilibrium,
-                         const py::list& curves, const Indices& curve_of_node, int of_gravity) {
+      "from_arrays",
+      [=](const Doubles& positions, const Indices& springs, const Doubles& mass,
+          const Doubles& stiffness, const Indices& pinned, const Given& gravity,
+          const Given& velocities, const Given& load, const Given& rest_length,
+          const Given& quartic, const Given& damping, const Given& cubic, const Given& breaks_at,
+          const Given& pulls_only, const Given& rigid, std::optional<double> rods_above,
+          double air_damping, const std::string& name, std::optional<double> until,
+          std::optional<double> stiff_above, bool starts_at_equilibrium, const py::list& curves,
+          const Indices& curve_of_node, int of_gravity) {
         Scene made = scene_from(positions, springs, mass, stiffness, pinned, gravity, velocities,
                                 load, rest_length, quartic, damping, cubic, breaks_at, pulls_only,
-                                air_damping, curves, curve_of_node, of_gravity);
+                                rigid, air_damping, curves, curve_of_node, of_gravity);
         made.name = name;
         made.until = until;
         made.stiff_above = stiff_above;
         made.starts_at_equilibrium = starts_at_equilibrium;
+        if (rods_above) make_rods_above(*rods_above, made);
         validate(made, name);
         return shared(std::move(made));
       });
@@ -305,6 +310,9 @@ void add_scenes(py::module_& module) {
   of_springs("breaks_at", &SpringLaw::breaks_at);
   has("pulls_only", [](const Scene& s) {
     return column<bool>(s.springs, [](const Spring& one) { return one.law.pulls_only; });
+  });
+  has("rigid", [](const Scene& s) {
+    return column<bool>(s.springs, [](const Spring& one) { return one.law.rigid; });
   });
   module.def("generators", &generator_records);
 }

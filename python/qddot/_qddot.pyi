@@ -36,6 +36,8 @@ class Scene:
         cubic: _Floats | None,
         breaks_at: _Floats | None,
         pulls_only: _Floats | None,
+        rigid: _Floats | None,
+        rods_above: float | None,
         air_damping: float,
         name: str,
         until: float | None,
@@ -95,6 +97,8 @@ class Scene:
     def breaks_at(self) -> _Floats: ...
     @property
     def pulls_only(self) -> NDArray[np.bool_]: ...
+    @property
+    def rigid(self) -> NDArray[np.bool_]: ...
     @property
     def air_damping(self) -> float: ...
 

@@ -88,7 +88,9 @@ class Scene:
     each, from 0. stiffness [N/m], rest_length [m] (default: as drawn), cubic [N/m^2], quartic
     [N/m^3] and damping [N s/m], of a dashpot along it (defaults: none): of each spring, or one for
     all. pulls_only: whether a spring is a cable, without any force below its rest length.
-    breaks_at: the strain at which it breaks (default: never). Likewise of each, or one. air_damping
+    breaks_at: the strain at which it breaks (default: never). rigid: whether it is a rod, whose
+    length stays rest_length. Likewise of each, or one. rods_above [N/m]: stiffer springs on a node
+    that moves are rods. air_damping
     [1/s]: alpha of the air's force -alpha m v on each node. mass [kg]: of each node, or one for
     all; 0 is massless.
     pinned: the fixed nodes, by number or as a mask. gravity: (dimension) [m/s^2]. velocities: as
@@ -124,6 +126,8 @@ class Scene:
         cubic: ArrayLike | None = None,
         breaks_at: ArrayLike | None = None,
         pulls_only: ArrayLike | None = None,
+        rigid: ArrayLike | None = None,
+        rods_above: float | None = None,
         air_damping: float = 0,
         name: str = "scene",
         until: float | None = None,
@@ -173,6 +177,8 @@ class Scene:
                 None if cubic is None else floats(cubic, "cubic", one=True),
                 None if breaks_at is None else floats(breaks_at, "breaks_at", one=True),
                 None if pulls_only is None else flags(pulls_only, "pulls_only"),
+                None if rigid is None else flags(rigid, "rigid"),
+                None if rods_above is None else number(rods_above, "rods_above"),
                 number(air_damping, "air_damping"),
                 str(name),
                 None if until is None else number(until, "until"),
@@ -230,6 +236,7 @@ class Scene:
         air_damping: float | None = None,
         pulls_only: bool = False,
         breaks_at: float | None = None,
+        rods_above: float | None = None,
     ) -> Scene:
         """The scene of a mesh (.obj, MEDIT .mesh, Gmsh .msh, .ply, .stl): every edge is a spring at
         its rest length. Masses come from node_mass or total_mass [kg], or from density: [kg/m^3] of
@@ -239,7 +246,8 @@ class Scene:
         that are fixed, each entry a box (min, max), the name or tag of a group, or an array of
         nodes. `loads`: pairs of such nodes and the force on each of them [N]. `damping_time` [s]:
         that of a dashpot along each edge, over the edge's stiffness; `air_damping` [1/s]. `pulls_only`: whether edges are cables;
-        `breaks_at`: the strain at which each breaks."""
+        `breaks_at`: the strain at which each breaks. `rods_above` [N/m]: stiffer springs are
+        rods."""
         path = os.path.abspath(os.fspath(file))
         stem = os.path.splitext(os.path.basename(path))[0]
         lines = [f"name = {_quoted(stem)}"]
@@ -247,6 +255,8 @@ class Scene:
             lines.append(f"until = {float(until)!r}")
         if gravity is not None:
             lines.append(f"gravity = {_list(gravity)}")
+        if rods_above is not None:
+            lines.append(f"rods_above = {float(rods_above)!r}")
         lines += ["[mesh]", f"file = {_quoted(path)}"]
         numbers = dict(
             stiffness=stiffness,
@@ -296,6 +306,7 @@ class Scene:
     cubic: Floats = _of_handle("cubic", "(springs) [N/m^2].")
     breaks_at: Floats = _of_handle("breaks_at", "(springs), the strain at which each breaks.")
     pulls_only: NDArray[np.bool_] = _of_handle("pulls_only", "(springs), whether it is a cable.")
+    rigid: NDArray[np.bool_] = _of_handle("rigid", "(springs), whether it is a rod.")
     air_damping: float = _of_handle("air_damping", "alpha of the force -alpha m v [1/s].")
 
     @property
@@ -326,8 +337,8 @@ class Scene:
         """The same scene with these arguments of Scene() replaced."""
         names = (
             "positions springs stiffness mass pinned gravity velocities load rest_length quartic "
-            "damping cubic breaks_at pulls_only air_damping name until stiff_above starts_at_equilibrium motion load_in_time "
-            "gravity_in_time"
+            "damping cubic breaks_at pulls_only rigid air_damping name until stiff_above "
+            "starts_at_equilibrium motion load_in_time gravity_in_time"
         ).split()
         for name in changes:
             if name not in names:

@@ -79,7 +79,8 @@ std::vector<Method> methods_where(const Condition& condition) {
 }
 // Whether the method takes any system.
 inline bool is_general(const Method& method) {
-  return !method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces);
+  return !method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces) &&
+         !method.asks(Need::constraints);
 }
 inline std::vector<Method> general_methods() { return methods_where(is_general); }
 inline std::vector<Method> methods_of(Family family) {
@@ -179,6 +180,7 @@ class Relay final : public System,
     return system_.discrete_gradient() ? this : nullptr;
   }
   const Laplacian* laplacian() const override { return system_.laplacian() ? this : nullptr; }
+  const Constraints* constraints() const override { return system_.constraints(); }
   const Split* split() const override { return stiff ? &split_ : nullptr; }
 
   void weighted_stiffness(const At& at, double compression_weight,
@@ -238,11 +240,20 @@ inline Problem linear_hammock(int dimension) {
   return {without_rest_lengths(p.network), p.initial};
 }
 
+// Makes a rod, as long as it is drawn, between the first two nodes, which then have one velocity.
+inline void add_rod(Problem& p) {
+  const int d = p.network.dimension;
+  const Vec apart = p.initial.q.segment(d, d) - p.initial.q.head(d);
+  p.network.rods.push_back({0, 1, Eigen::Vector3d::Zero(), apart.norm()});
+  p.initial.v.segment(d, d) = p.initial.v.head(d);
+}
+
 // A hammock that the method applies to.
 inline Problem problem_for(const Method& method, int dimension = 2) {
   Problem p =
       method.asks(Need::constant_stiffness) ? linear_hammock(dimension) : hammock(dimension);
   if (method.asks(Need::split_forces)) p.network = with_split(p.network);
+  if (method.asks(Need::constraints)) add_rod(p);
   return p;
 }
 

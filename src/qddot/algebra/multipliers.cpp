@@ -1,6 +1,11 @@
 #include "qddot/algebra/multipliers.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "qddot/algebra/factors.hpp"
+#include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot {
 
@@ -12,6 +17,9 @@ Multipliers::Multipliers(const System& system)
   const Index m = gradients_.rows();
   right_.resize(m);
   lambda_.resize(m);
+  for (const Constraints::Curvature& curvature : constraints_->curvatures()) {
+    longest_ = std::max(longest_, 1 / std::abs(curvature.value));
+  }
 
   // For each unknown, the values of G in its column, by rows.
   struct Value {
@@ -53,6 +61,8 @@ Multipliers::Multipliers(const System& system)
   matrix_.setFromTriplets(pattern.begin(), pattern.end());
   factors_ = make_multifrontal(matrix_, Vec::Zero(m));
 }
+
+Multipliers::~Multipliers() = default;
 
 void Multipliers::take_gradients(const At& at) {
   if (constraints_) constraints_->constraint_gradients(at, gradients_);
@@ -104,6 +114,43 @@ const Vec& Multipliers::forces_at(const At& at, const ConstVec& f) {
   }
   solve(right_, lambda_);
   return lambda_;
+}
+
+const Vec& Multipliers::project_velocities(const At& at, Vec& v) {
+  if (!constraints_) return lambda_;
+  constraints_->constraint_rates(at, right_);
+  right_ += gradients_ * v;
+  solve(right_, lambda_);
+  add_pull(-1, lambda_, v);
+  return lambda_;
+}
+
+double Multipliers::rounding(const VecView& q) const {
+  return 2 * machine_epsilon * std::max(q.lpNorm<Eigen::Infinity>(), longest_);
+}
+
+bool Multipliers::project(At at, Vec& q, Vec& v) {
+  if (!constraints_) return true;
+  constexpr int most_iterations = 10;
+  const double enough = rounding(q);
+  double last = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_iterations; ++i) {
+    At here(at.t, q, v);
+    here.within = at.within;
+    here.phases = at.phases;
+    take_gradients(here);
+    if (!factorize()) return false;
+    constraints_->constraint_values(here, right_);
+    const double worst = right_.lpNorm<Eigen::Infinity>();
+    if (worst <= enough || worst > last / 2) {
+      project_velocities(here, v);
+      return worst <= 32 * enough;
+    }
+    last = worst;
+    solve(right_, lambda_);
+    add_pull(-1, lambda_, q);
+  }
+  return false;
 }
 
 }  // namespace qddot

@@ -3,10 +3,11 @@
 #include <memory>
 #include <vector>
 
-#include "qddot/algebra/factors.hpp"
 #include "qddot/model/capabilities.hpp"
 
 namespace qddot {
+
+class Factors;
 
 // The forces -G'lambda that keep the constraints of a system, by the symmetric matrix
 //   A = G M^-1 G'   (m x m)
@@ -17,6 +18,9 @@ class Multipliers {
   // Borrows the system, which may have no constraints: then m = 0. Its masses are above 0 where
   // constraints act.
   explicit Multipliers(const System& system);
+  ~Multipliers();
+  Multipliers(const Multipliers&) = delete;
+  Multipliers& operator=(const Multipliers&) = delete;
 
   Index count() const { return gradients_.rows(); }
   // G where take_gradients() was called last.
@@ -33,6 +37,13 @@ class Multipliers {
   // forces there. They make G q'' what keeps the constraints:
   //   A lambda = G M^-1 f + g'' at q'' = 0
   const Vec& forces_at(const At& at, const ConstVec& f);
+  // Changes `v` by -M^-1 G'x such that G v + dg/dt = 0, and returns x; A is factorised at `at`.
+  const Vec& project_velocities(const At& at, Vec& v);
+  // Moves q to g = 0 up to rounding, along M^-1 G', and projects v there; both of a place that is
+  // near. Returns false where that fails. `q` and `v` hold the numbers of `at`.
+  bool project(At at, Vec& q, Vec& v);
+  // The largest |g| [m] that is rounding at q: a few roundings of coordinates and lengths.
+  double rounding(const VecView& q) const;
 
  private:
   // A summand of an entry of A: values a and b of G, and the unknown that both belong to.
@@ -49,6 +60,7 @@ class Multipliers {
   std::vector<Term> terms_;
   std::unique_ptr<Factors> factors_;
   Vec right_, lambda_;
+  double longest_ = 0;  // 1/d2g/dq2, a rod's length [m]
 };
 
 }  // namespace qddot

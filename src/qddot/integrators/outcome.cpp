@@ -63,7 +63,7 @@ constexpr OutcomeWords outcomes[] = {
      "the scene has no rods, whose lengths this method keeps: take verlet, or kahan_li8"},
     {"refuses_constraints",
      "the scene has rods, whose lengths this method does not keep: take rattle, rattle4, rattle6, "
-     "rattle8 or ida_rods"},
+     "rattle8, arkode_erk8_rods or ida_rods"},
     {"chatters",
      "springs go slack, taut or break again and again while the time stands still: give them "
      "dashpots, or take verlet or an implicit method of order 2, which step over it"},

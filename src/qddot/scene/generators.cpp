@@ -21,6 +21,7 @@
   GENERATOR(bowed_string)           \
   GENERATOR(cloth)                  \
   GENERATOR(framed_cloth)           \
+  GENERATOR(hemmed_cloth)           \
   GENERATOR(lattice)                \
   GENERATOR(fpu)                    \
   GENERATOR(fput)                   \

@@ -77,6 +77,7 @@ std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& no
   const Values cubic("cubic", a.cubic.size() == 0 ? none : a.cubic, count);
   const Values breaks_at("breaks_at", a.breaks_at.size() == 0 ? never : a.breaks_at, count);
   const Values pulls_only("pulls_only", a.pulls_only.size() == 0 ? none : a.pulls_only, count);
+  const Values rigid("rigid", a.rigid.size() == 0 ? none : a.rigid, count);
   std::vector<Spring> springs;
   springs.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -85,6 +86,11 @@ std::vector<Spring> springs_of(const SceneArrays& a, const std::vector<Node>& no
       require_node(node, nodes.size(), fmt::format("springs[{}]", i));
     }
     const double length = (nodes[to].position - nodes[from].position).norm();
+    if (rigid[i] != 0) {
+      springs.push_back(
+          {{from, to}, {.rest_length = is_drawn ? length : rest_length[i], .rigid = true}});
+      continue;
+    }
     springs.push_back({{from, to},
                        {.stiffness = stiffness[i],
                         .rest_length = is_drawn ? length : rest_length[i],

@@ -25,7 +25,9 @@ struct SceneArrays {
   Eigen::VectorXd cubic{};        // [N/m^2], likewise; empty: none
   Eigen::VectorXd breaks_at{};    // strains, likewise; empty, or infinite: never
   Eigen::VectorXd pulls_only{};   // 1 where a spring is a cable, else 0, likewise; empty: none
-  double air_damping = 0;         // [1/s]
+  // 1 where it is a rod of the rest length, whose other values are not read; else 0, likewise.
+  Eigen::VectorXd rigid{};
+  double air_damping = 0;  // [1/s]
   // Curves of time, the number of that of each node or -1, and that of gravity; see Scene.
   std::vector<TimeCurve> curves{};
   std::vector<int> curve_of_node{};  // empty: none has one

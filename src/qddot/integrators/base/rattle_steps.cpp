@@ -6,14 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "qddot/model/machine_epsilon.hpp"
-
 namespace qddot {
 namespace {
 
-// Rounding of a length is some roundings of the coordinates and of itself. Newton's method ends
-// there, or where g no longer falls and is not far above.
-constexpr double roundings = 2 * machine_epsilon, most_roundings = 64 * machine_epsilon;
+// Newton's method ends where g is rounding, or where it no longer falls and is not far above that.
+constexpr double most_roundings = 32;
 constexpr int most_iterations = 60;
 
 }  // namespace
@@ -28,12 +25,7 @@ RattleSteps::RattleSteps(SystemRun& run, const Splitting& splitting)
       lambda_(Vec::Zero(multipliers_.count())),
       g_(lambda_),
       solved_(lambda_),
-      rates_(lambda_) {
-  if (!constraints_) return;
-  for (const Constraints::Curvature& curvature : constraints_->curvatures()) {
-    longest_ = std::max(longest_, 1 / std::abs(curvature.value));
-  }
-}
+      rates_(lambda_) {}
 
 void RattleSteps::begin(const State& state, X& x) {
   static_cast<State&>(x) = state;
@@ -99,13 +91,13 @@ Outcome RattleSteps::drift(double t, double s, X& next) {
     lambda_ = next.mu + s / next.size * next.change;
     multipliers_.add_pull(-s / 2, lambda_, next.v);
     next.q += length * next.v;
-    const double size = std::max(next.q.lpNorm<Eigen::Infinity>(), longest_);
+    const double rounding = multipliers_.rounding(next.q);
     double last = std::numeric_limits<double>::infinity();
     for (int i = 0;; ++i) {
       constraints_->constraint_values(place(t + s, next.q), g_);
       const double worst = g_.lpNorm<Eigen::Infinity>();
-      if (worst <= roundings * size) break;
-      if (worst > last / 2 && worst <= most_roundings * size) break;
+      if (worst <= rounding) break;
+      if (worst > last / 2 && worst <= most_roundings * rounding) break;
       if (i == most_iterations || !std::isfinite(worst)) return no_solution(t);
       last = worst;
       multipliers_.solve(g_, solved_);
@@ -130,12 +122,10 @@ Outcome RattleSteps::drift(double t, double s, X& next) {
 Outcome RattleSteps::kick_along_constraints(double t, double s, X& next) {
   if (!constraints_) return Outcome::reached_end;
   if (!factorize_at(t, next.q)) return no_solution(t);
-  constraints_->constraint_rates(place(t, next.q), rates_);
-  g_ = multipliers_.gradients() * next.v + rates_;
-  multipliers_.solve(g_, solved_);
+  const At here = place(t, next.q);
+  if (is_driven()) constraints_->constraint_rates(here, rates_);
   ++counts().solves;
-  multipliers_.add_pull(-1, solved_, next.v);
-  next.mu = 2 / s * solved_;
+  next.mu = 2 / s * multipliers_.project_velocities(here, next.v);
   if (is_driven()) add_work_of_impulse(s / 2, next.mu, next);
   return Outcome::reached_end;
 }

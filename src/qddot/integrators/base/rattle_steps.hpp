@@ -57,7 +57,6 @@ class RattleSteps final : public Formula {
   bool has_dashpots_;
   double air_damping_;  // alpha [1/s] of drifts
   Multipliers multipliers_;
-  double longest_ = 0;          // of curvature radii, a rod's length [m]
   double time_of_factors_ = 0;  // [s], where A is factorised; NaN if it is singular there
   Vec lambda_, g_, solved_;     // m
   Vec rates_, before_, half_;   // dg/dt [m/s]; v at the start and in the middle of a stage

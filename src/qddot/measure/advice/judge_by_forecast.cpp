@@ -65,7 +65,7 @@ const Trial* Search::survey() {
 // Whether there is a forecast; begins one along the trial if its motion vibrates.
 bool Search::may_forecast(const Trial& trial) {
   if (forecast_) return true;
-  if (system_.switching()) return false;
+  if (system_.switching() || is_constrained(system_)) return false;
   double w = runs_.bound_of_w();
   for (const State& state : trial.path) w = std::max(w, frequency_bound(system_, state.q));
   if (!(w > 0) || !std::isfinite(w)) return false;

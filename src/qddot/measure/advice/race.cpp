@@ -94,8 +94,27 @@ std::optional<Candidate> Search::first_of_method(const Trial& answer, double few
   return cheapest;
 }
 
+// Runs of fixed steps that are halved until the error is known to be small enough, method after
+// method; where no forecast can choose steps.
+const Trial* Search::race_of_halved_steps(const Trial* answer, double accuracy) {
+  for (const Method& method : methods()) {
+    if (method.knob != Knob::step_size || !applies_to(method, system_)) continue;
+    for (double h = until_ / rules_.places; runs_.seconds_left() > 0; h /= 2) {
+      const double seconds = rules_.clearly_below * answer->seconds;
+      const Trial& trial = runs_.make(method, h, {.seconds = seconds, .only_end = true});
+      if (trial.summary.outcome == Outcome::over_budget) break;
+      if (!trial.reached_end() || !check_.is_known(trial, accuracy)) continue;
+      runs_.time_again(trial);
+      if (trial.seconds < answer->seconds) answer = &trial;
+      break;
+    }
+  }
+  return answer;
+}
+
 const Trial* Search::race(const Trial* answer, double accuracy) {
   if (answer->method->order == 0 || !check_.has_judge() || runs_.stage().rests()) return answer;
+  if (is_constrained(system_)) return race_of_halved_steps(answer, accuracy);
   if (!may_forecast(*answer)) return answer;
   forecast_->learn(check_);
   runs_.time_again(*answer);

@@ -49,6 +49,8 @@ bool Search::judge(double accuracy) {
   if (system_.has_massless()) return judge_at_last(accuracy, true);
   // A forecast knows no moments at which springs go slack or break.
   if (system_.switching()) return judge_at_last(accuracy, false);
+  // Vibrations under constraints are not those of K.
+  if (is_constrained(system_)) return judge_at_last(accuracy, false);
   // Explicit methods take no fewer steps than Verlet's where vibrations bound them.
   const std::int64_t few = runs_.forces_within(rules_.little_work);
   if (runs_.steps_of_verlet() < static_cast<double>(few / runs_of_three) &&

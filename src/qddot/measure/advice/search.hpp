@@ -74,6 +74,7 @@ class Search {
   std::optional<Candidate> promised(double error, double seconds, double unseen) const;
   std::optional<Candidate> first_of_method(const Trial& answer, double fewest, double accuracy);
   const Trial* race(const Trial* answer, double accuracy);
+  const Trial* race_of_halved_steps(const Trial* answer, double accuracy);
 
   const Model& model_;
   const System& system_;

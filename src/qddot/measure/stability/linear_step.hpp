@@ -32,7 +32,8 @@ struct LinearStep {
 // Whether a step of the method multiplies an oscillator's state by one matrix. Its steps must be
 // fixed and not only for a part of the forces.
 inline bool has_linear_step(const Method& method) {
-  return method.knob == Knob::step_size && !method.asks(Need::split_forces);
+  return method.knob == Knob::step_size && !method.asks(Need::split_forces) &&
+         !method.asks(Need::constraints);
 }
 
 // The responses Y_0 = I, Y_1, Y_2, ... after each step: 2 x 2 matrices whose columns are the states
