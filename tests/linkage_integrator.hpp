@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
@@ -81,7 +83,8 @@ class ExtrapolatedStep {
     Real largest = 0;
     for (Eigen::Index c = 0; c < sizes.size(); ++c) {
       const Real own = std::abs(last_change[c]) / sizes[c];
-      if (!(own <= largest)) largest = own;  // a number that is none is an error, too
+      // A number that is none is an error, too.
+      largest = std::isnan(own) ? std::numeric_limits<Real>::infinity() : std::max(largest, own);
     }
     return largest;
   }

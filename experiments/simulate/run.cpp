@@ -17,6 +17,7 @@
 #include "qddot/integrators/option_table.hpp"
 #include "qddot/integrators/spring_changes.hpp"
 #include "qddot/measure/advice/solve.hpp"
+#include "qddot/measure/advice/solve_with_rods.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/samples.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -148,13 +149,24 @@ int answer(const Arguments& a) {
   const Every every = every_of(a);
   require_distinct_outputs(a);
   Subject subject = subject_of(choice_of(a), a.until);
-  const auto model = std::make_shared<const Model>(std::move(subject.model));
+  auto model = std::make_shared<const Model>(std::move(subject.model));
   const double until = subject.until;
 
-  Outputs output(a, every, subject.drawn, subject.start(), *model, until);
+  std::optional<Outputs> made(std::in_place, a, every, subject.drawn, subject.start(), *model,
+                              until);
   wait_for_answer(patience_with_an_answer);
   progress().stage("looking for the fastest run");
-  const Answer answer = solve(*model, until, {.accuracy = a.accuracy, .of = of}, &subject.start());
+  const Wanted wanted{.accuracy = a.accuracy, .of = of};
+  const auto with_rods =
+      solve_with_rods(subject.start(), reductions_of(choice_of(a)), until, wanted);
+  if (with_rods) {
+    model = with_rods->model;
+    made.reset();
+    made.emplace(a, every, subject.drawn, with_rods->scene, *model, until);
+  }
+  Outputs& output = *made;
+  const Answer answer =
+      with_rods ? with_rods->answer : solve(*model, until, wanted, &subject.start());
   progress().wipe();
   const auto why = answer.is_reached ? std::nullopt : interrupted();
   if (!answer.method) {  // no run was begun
@@ -170,6 +182,7 @@ int answer(const Arguments& a) {
     origin["energy_loss"] = answer.summary.energy_loss;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     origin.update(about(answer, a));
+    if (with_rods) origin["rods"] = {{"count", with_rods->rods}, {"change", with_rods->change}};
     output.finish(answer.end, answer.summary.breaks, answer.break_errors, origin);
   }
   fmt::print(
@@ -179,6 +192,7 @@ int answer(const Arguments& a) {
       knob_in_words(*answer.method, answer.value), estimate_in_words(answer),
       time_in_words(answer.seconds.run), time_in_words(answer.seconds.check),
       time_in_words(answer.seconds.pilots), answer.runs, answer.runs == 1 ? "" : "s");
+  if (with_rods) fmt::print("{}\n", with_rods->in_words());
   if (answer.is_reached) return done;
   fmt::print(stderr, "simulate: --accuracy {:g} was not reached: {}\n", *a.accuracy, answer.why);
   return why ? why->status : end_not_reached;

@@ -51,11 +51,9 @@ class ErkRods final : public Arkode {
     if (constraints_) {
       const At here = place(t, at);
       multipliers_.take_gradients(here);
-      ++counts().factorizations;
       if (!multipliers_.factorize()) return false;
-      ++counts().solves;
       const Vec& lambda = multipliers_.forces_at(here, f_);
-      f_ -= multipliers_.gradients().transpose() * lambda;
+      f_.noalias() -= multipliers_.gradients().transpose() * lambda;
       constraints_->constraint_rates(here, g_);
       taken -= lambda.dot(g_);
     }

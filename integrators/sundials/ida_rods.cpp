@@ -33,7 +33,6 @@ using namespace sundials;
 constexpr double unlimited = 1e200;
 
 class IdaRods final : public Library {
-  using Entry = Eigen::Triplet<double>;
   using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, sunindextype>;
 
  public:
@@ -57,9 +56,7 @@ class IdaRods final : public Library {
     absolute.q.tail(g_.size()).setConstant(unlimited);
     absolute.v.tail(g_.size()).setConstant(unlimited);
     check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
-    set_entries(0, 1, y());
-    jacobian_.resize(N_VGetLength(y()), N_VGetLength(y()));
-    jacobian_.setFromTriplets(entries_.begin(), entries_.end());
+    find_places();
     matrix_.reset(check(SUNSparseMatrix(jacobian_.rows(), jacobian_.cols(), jacobian_.nonZeros(),
                                         CSC_MAT, context())));
     write_jacobian(matrix_.get());
@@ -106,7 +103,7 @@ class IdaRods final : public Library {
     is_regular_ = multipliers_.factorize();
     if (is_regular_) at.v.tail(g_.size()) = multipliers_.forces_at(place(state.t, at), f_);
     rate.q.head(n_) = state.v;
-    if (constraints_) f_ -= multipliers_.gradients().transpose() * at.v.tail(g_.size());
+    if (constraints_) f_.noalias() -= multipliers_.gradients().transpose() * at.v.tail(g_.size());
     rate.v.head(n_) = f_.cwiseQuotient(system().mass());
     if (has_work(y())) sundials::work(rate_.get()) = taken(state.t, at);
     check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
@@ -153,12 +150,13 @@ class IdaRods final : public Library {
     out.v.head(n_) = system().mass().cwiseProduct(change.v.head(n_)) - f_;
     if (constraints_) {
       constraints_->constraint_gradients(here, gradients_);
-      out.q.head(n_) += gradients_.transpose() * at.q.tail(m);
-      out.v.head(n_) += gradients_.transpose() * at.v.tail(m);
+      out.q.head(n_).noalias() += gradients_.transpose() * at.q.tail(m);
+      out.v.head(n_).noalias() += gradients_.transpose() * at.v.tail(m);
       constraints_->constraint_values(here, g_);
       out.q.tail(m) = g_;
       constraints_->constraint_rates(here, g_);
-      out.v.tail(m) = gradients_ * at.v.head(n_) + g_;
+      out.v.tail(m) = g_;
+      out.v.tail(m).noalias() += gradients_ * at.v.head(n_);
     }
     if (has_work(y)) sundials::work(residual) = sundials::work(rate) - taken(t, at);
     return std::isfinite(out.v.sum());
@@ -168,8 +166,11 @@ class IdaRods final : public Library {
                           void* user, N_Vector, N_Vector, N_Vector) {
     auto& self = *static_cast<IdaRods*>(static_cast<Library*>(user));
     return self.guarded([&] {
-      self.set_entries(t, c, y);
-      self.jacobian_.setFromTriplets(self.entries_.begin(), self.entries_.end());
+      self.jacobian_.coeffs().setZero();
+      double* values = self.jacobian_.valuePtr();
+      const int* place = self.places_.data();
+      self.for_entries(t, c, Halves(y),
+                       [&](Index, Index, double value) { values[*place++] += value; });
       self.write_jacobian(matrix);
       return true;
     });
@@ -182,48 +183,60 @@ class IdaRods final : public Library {
     std::copy_n(jacobian_.valuePtr(), jacobian_.nonZeros(), SM_DATA_S(matrix));
   }
 
-  // Lists the entries of the Jacobian; their places are always the same.
-  void set_entries(double t, double c, N_Vector y) {
-    const Halves at(y);
+  // Makes the pattern of the Jacobian, and finds the place of each entry that for_entries() names.
+  void find_places() {
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto list = [&](Index row, Index column, double) {
+      entries.emplace_back(row, column, 0);
+    };
+    for_entries(0, 1, Halves(y()), list);
+    jacobian_.resize(N_VGetLength(y()), N_VGetLength(y()));
+    jacobian_.setFromTriplets(entries.begin(), entries.end());
+    const sunindextype *first = jacobian_.outerIndexPtr(), *rows = jacobian_.innerIndexPtr();
+    for (const auto& entry : entries) {
+      const auto* place =
+          std::lower_bound(rows + first[entry.col()], rows + first[entry.col() + 1], entry.row());
+      places_.push_back(static_cast<int>(place - rows));
+    }
+  }
+
+  // Calls see(row, column, value) for the summands of the Jacobian's entries, always in one order.
+  template <class See>
+  void for_entries(double t, double c, const Halves& at, const See& see) {
     const At here = place(t, at);
     const Index m = g_.size(), v = n_ + m;  // the first velocity, and the first row of M v'
-    entries_.clear();
-    const auto add = [&](Index row, Index column, double value) {
-      entries_.emplace_back(row, column, value);
-    };
-    const auto add_symmetric = [&](Index row, Index column, Index i, Index j, double value) {
-      add(row + i, column + j, value);
-      if (i != j) add(row + j, column + i, value);
+    const auto see_both = [&](Index row, Index column, Index i, Index j, double value) {
+      see(row + i, column + j, value);
+      if (i != j) see(row + j, column + i, value);
     };
     for (Index i = 0; i < n_; ++i) {
-      add(i, i, c);
-      add(i, v + i, -1);
-      add(v + i, v + i, c * system().mass()[i]);
+      see(i, i, c);
+      see(i, v + i, -1);
+      see(v + i, v + i, c * system().mass()[i]);
     }
     stiffness(here, k_);
     if (c_.size() > 0) system().damping()->damping_matrix(here, c_);
     for (Index j = 0; j < n_; ++j) {
-      for (SymmetricMatrix::InnerIterator k(k_, j); k; ++k)
-        add_symmetric(v, 0, k.row(), j, -k.value());
-      for (SymmetricMatrix::InnerIterator k(c_, j); c_.size() > 0 && k; ++k)
-        add_symmetric(v, v, k.row(), j, k.value());
+      for (SymmetricMatrix::InnerIterator k(k_, j); k; ++k) see_both(v, 0, k.row(), j, -k.value());
+      if (c_.size() == 0) continue;
+      for (SymmetricMatrix::InnerIterator d(c_, j); d; ++d) see_both(v, v, d.row(), j, d.value());
     }
     for (const Curvature& one : curvatures_) {
-      add_symmetric(0, 0, one.i, one.j, at.q[n_ + one.k] * one.value);
-      add_symmetric(v, 0, one.i, one.j, at.v[n_ + one.k] * one.value);
+      see_both(0, 0, one.i, one.j, at.q[n_ + one.k] * one.value);
+      see_both(v, 0, one.i, one.j, at.v[n_ + one.k] * one.value);
     }
     if (constraints_) {
       constraints_->constraint_gradients(here, gradients_);
       for_each(gradients_, [&](Index k, Index i, double value) {
-        add(i, n_ + k, value);
-        add(n_ + k, i, value);
-        add(v + i, v + n_ + k, value);
-        add(v + n_ + k, v + i, value);
+        see(i, n_ + k, value);
+        see(n_ + k, i, value);
+        see(v + i, v + n_ + k, value);
+        see(v + n_ + k, v + i, value);
       });
       constraints_->gradient_rates(here, gradients_);
-      for_each(gradients_, [&](Index k, Index i, double value) { add(v + n_ + k, i, value); });
+      for_each(gradients_, [&](Index k, Index i, double value) { see(v + n_ + k, i, value); });
     }
-    if (has_work(y)) add(2 * v, 2 * v, c);
+    if (has_work(y())) see(2 * v, 2 * v, c);
   }
 
   template <class See>
@@ -265,7 +278,7 @@ class IdaRods final : public Library {
   GradientMatrix gradients_;
   Vec f_, g_;
   SymmetricMatrix k_, c_;
-  std::vector<Entry> entries_;
+  std::vector<int> places_;  // in the Jacobian, of its summands
   Columns jacobian_;
   Orders orders_;
   bool is_regular_ = true;

@@ -45,8 +45,8 @@ LinkageComparisons compare_all(const KnownLinkage& known, const Choice& choice) 
   LinkageComparison comparison(known);
   validate(known.scene(), "the scene");
   const Model reduced(known.scene()), whole(known.scene(), Reductions::only({}));
-  comparison.compare_start(reduced, "reduced");
-  comparison.compare_start(whole, "no reduction");
+  comparison.compare_start(reduced, true, "reduced");
+  comparison.compare_start(whole, false, "no reduction");
   for (const Method& method : methods()) {
     if (!choice.takes(method)) continue;
     comparison.compare(method, reduced, "");

@@ -70,17 +70,22 @@ inline const Method& method_named(std::string_view name) {
   return *found;
 }
 
-// The registry's methods that fulfil a condition.
+// The registry's methods for systems without constraints; the suite `rods` has the others.
+inline std::vector<Method> unconstrained_methods() {
+  std::vector<Method> list = methods();
+  std::erase_if(list, [](const Method& method) { return method.asks(Need::constraints); });
+  return list;
+}
+// Those of them that fulfil a condition.
 template <class Condition>
 std::vector<Method> methods_where(const Condition& condition) {
-  std::vector<Method> list = methods();
+  std::vector<Method> list = unconstrained_methods();
   std::erase_if(list, [&](const Method& method) { return !condition(method); });
   return list;
 }
 // Whether the method takes any system.
 inline bool is_general(const Method& method) {
-  return !method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces) &&
-         !method.asks(Need::constraints);
+  return !method.asks(Need::constant_stiffness) && !method.asks(Need::split_forces);
 }
 inline std::vector<Method> general_methods() { return methods_where(is_general); }
 inline std::vector<Method> methods_of(Family family) {
@@ -240,20 +245,11 @@ inline Problem linear_hammock(int dimension) {
   return {without_rest_lengths(p.network), p.initial};
 }
 
-// Makes a rod, as long as it is drawn, between the first two nodes, which then have one velocity.
-inline void add_rod(Problem& p) {
-  const int d = p.network.dimension;
-  const Vec apart = p.initial.q.segment(d, d) - p.initial.q.head(d);
-  p.network.rods.push_back({0, 1, Eigen::Vector3d::Zero(), apart.norm()});
-  p.initial.v.segment(d, d) = p.initial.v.head(d);
-}
-
 // A hammock that the method applies to.
 inline Problem problem_for(const Method& method, int dimension = 2) {
   Problem p =
       method.asks(Need::constant_stiffness) ? linear_hammock(dimension) : hammock(dimension);
   if (method.asks(Need::split_forces)) p.network = with_split(p.network);
-  if (method.asks(Need::constraints)) add_rod(p);
   return p;
 }
 

@@ -7,6 +7,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/scene/rods.hpp"
 #include "tests/integrators/scenes.hpp"
 #include "tests/scene/drawn.hpp"
 
@@ -110,6 +111,12 @@ Course two_bodies() {
   return course("two bodies", scene);
 }
 
+Course hem_of_rods() {
+  Scene scene = draw("hemmed_cloth", {{"nodes", 5}});
+  make_rods_above(1e6, scene);
+  return course("hem of rods", scene);
+}
+
 std::vector<Course> courses() {
   return {course("hammock", hammock(3)),
           course("linear hammock", linear_hammock(3)),
@@ -117,6 +124,7 @@ std::vector<Course> courses() {
           course("cloth", draw("cloth", {{"nodes", 5}})),
           stirred(course("framed cloth", draw("framed_cloth", {{"nodes", 5}})), 0.01),
           two_bodies(),
+          hem_of_rods(),
           course("strut", draw("strut", {{"compression", 0.7}})),
           strut_in_long_steps(),
           long_chain()};

@@ -80,7 +80,7 @@ std::vector<Method> of_fixed_steps() {
 std::vector<Method> of_chosen_steps() {
   return methods_where([](const Method& m) { return takes_damping(m) && m.knob == Knob::rtol; });
 }
-std::vector<Method> all_methods() { return methods(); }
+std::vector<Method> all_methods() { return unconstrained_methods(); }
 std::vector<Method> turning() {
   return methods_where([](const Method& m) {
     return is_general(m) && m.takes_damping() == Damped::by_any && keeps_angular_momentum(m);

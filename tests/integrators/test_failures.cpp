@@ -119,7 +119,8 @@ void check_runs_again(const Method& method, Spoiled& spoiled) {
 
 }  // namespace
 
-BOOST_DATA_TEST_CASE(an_exception_in_the_system_comes_out_as_itself, methods(), method) {
+BOOST_DATA_TEST_CASE(an_exception_in_the_system_comes_out_as_itself, unconstrained_methods(),
+                     method) {
   for_all_spoiled(method, [&](Spoiled& spoiled, int first_bad, bool in_matrix) {
     const Run r = spoiled.run(first_bad, break_it);
     BOOST_TEST(r.thrown == "the spring broke");
@@ -129,7 +130,7 @@ BOOST_DATA_TEST_CASE(an_exception_in_the_system_comes_out_as_itself, methods(), 
   });
 }
 
-BOOST_DATA_TEST_CASE(what_is_no_number_is_named, methods(), method) {
+BOOST_DATA_TEST_CASE(what_is_no_number_is_named, unconstrained_methods(), method) {
   for_all_spoiled(method, [&](Spoiled& spoiled, int first_bad, bool in_matrix) {
     if (spoiled.only_bounds_steps) return;
     // A step by an infinite force is one beyond all bounds to some.
@@ -176,7 +177,7 @@ BOOST_DATA_TEST_CASE(where_a_force_becomes_no_number_a_run_ends_just_before,
   BOOST_TEST(distance(r.state, right) < allowed(method));
 }
 
-BOOST_DATA_TEST_CASE(a_run_can_be_stopped_between_two_steps, methods(), method) {
+BOOST_DATA_TEST_CASE(a_run_can_be_stopped_between_two_steps, unconstrained_methods(), method) {
   const Problem p = problem_for(method);
   const auto system = make_mass_spring(p.network);
   std::stop_source budget;

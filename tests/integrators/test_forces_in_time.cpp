@@ -132,7 +132,8 @@ void check_refusal(const Method& method, const System& system, Outcome outcome) 
 
 }  // namespace
 
-BOOST_DATA_TEST_CASE(methods_keep_their_order_with_forces_that_depend_on_time, methods(), method) {
+BOOST_DATA_TEST_CASE(methods_keep_their_order_with_forces_that_depend_on_time,
+                     unconstrained_methods(), method) {
   // This system has forces of time without Driving.
   const bool needs_driving = method.asks(Need::rate_in_time) ||
                              method.asks(Need::balance_in_time) || method.asks(Need::known_in_time);
@@ -143,8 +144,8 @@ BOOST_DATA_TEST_CASE(methods_keep_their_order_with_forces_that_depend_on_time, m
   }
 }
 
-BOOST_DATA_TEST_CASE(methods_keep_their_order_with_forces_that_depend_on_velocities, methods(),
-                     method) {
+BOOST_DATA_TEST_CASE(methods_keep_their_order_with_forces_that_depend_on_velocities,
+                     unconstrained_methods(), method) {
   if (method.asks(Need::conservative)) {
     check_refusal(method, Driven(k, 0.6, 0), Outcome::not_conservative);
   } else {

@@ -14,7 +14,7 @@ Options options_for(const Method& method) { return options_of(method, 0.01, 1e-6
 }  // namespace
 
 BOOST_DATA_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone_and_shows_all_at_one_time,
-                     methods(), method) {
+                     unconstrained_methods(), method) {
   const std::vector<Part> parts = parts_for(method);
   const Together together(parts);
   for (const std::vector<double>& times :
@@ -43,7 +43,8 @@ BOOST_DATA_TEST_CASE(every_method_takes_each_part_as_if_it_were_alone_and_shows_
   }
 }
 
-BOOST_DATA_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed, methods(), method) {
+BOOST_DATA_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed, unconstrained_methods(),
+                     method) {
   if (method.asks(Need::split_forces)) return;  // which the part that gives up has not
   std::vector<Part> parts = parts_for(method);
   parts.insert(parts.begin(), giving_up(-0.2, "no more"));
@@ -70,7 +71,8 @@ BOOST_DATA_TEST_CASE(each_call_is_a_fresh_run_also_after_one_that_failed, method
   BOOST_TEST(same(stopped, together.start));
 }
 
-BOOST_DATA_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing, methods(), method) {
+BOOST_DATA_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing,
+                     unconstrained_methods(), method) {
   const Part nothing = {[] { return make_mass_spring({.dimension = 2}); }, {start_time, {}, {}}};
   const std::vector<Part> parts = parts_for(method);
   const auto group = [](std::vector<Part> few) {
@@ -90,7 +92,7 @@ BOOST_DATA_TEST_CASE(parts_without_unknowns_and_parts_of_parts_change_nothing, m
   BOOST_TEST(empty.state.t == t_end);
 }
 
-BOOST_DATA_TEST_CASE(what_one_part_is_refused_for_all_are, methods(), method) {
+BOOST_DATA_TEST_CASE(what_one_part_is_refused_for_all_are, unconstrained_methods(), method) {
   Problem massless = Oscillator().problem();
   massless.network.node_mass.setZero();
   std::vector<Part> parts = parts_for(method);

@@ -95,7 +95,8 @@ BOOST_DATA_TEST_CASE(a_part_that_diverges_ends_the_run_of_all_at_its_last_step,
                 Outcome::diverged);
 }
 
-BOOST_DATA_TEST_CASE(a_part_that_throws_ends_the_run_of_all_at_its_last_step, methods(), method) {
+BOOST_DATA_TEST_CASE(a_part_that_throws_ends_the_run_of_all_at_its_last_step,
+                     unconstrained_methods(), method) {
   if (method.asks(Need::split_forces)) return;  // which the part that gives up has not
   check_failure(method, giving_up(-0.2, "no more"), Outcome::solver_failed);
 }
@@ -144,7 +145,8 @@ BOOST_DATA_TEST_CASE(a_step_that_no_part_can_take_is_refused_for_all, methods_of
   BOOST_TEST(same(r.state, together.start));
 }
 
-BOOST_DATA_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together, methods(), method) {
+BOOST_DATA_TEST_CASE(a_run_out_of_time_ends_where_all_parts_last_were_together,
+                     unconstrained_methods(), method) {
   if (method.asks(Need::split_forces)) return;  // which the relay of the last straw has not
   for (std::size_t place = 0; place < 4; ++place) {
     BOOST_TEST_CONTEXT(method.name << ", place " << place) {

@@ -205,6 +205,7 @@ BOOST_AUTO_TEST_CASE(a_step_beyond_all_numbers_grows_beyond_all_bounds) {
 
 BOOST_AUTO_TEST_CASE(measured_limits_are_the_declared_ones) {
   for (const Method& method : methods()) {
+    if (method.asks(Need::constraints)) continue;  // see the suite `rods`
     BOOST_TEST_CONTEXT(method.name) {
       // A method without step error is stable at every h.
       const bool needs_one =

@@ -68,7 +68,7 @@ void Multipliers::take_gradients(const At& at) {
   if (constraints_) constraints_->constraint_gradients(at, gradients_);
 }
 
-bool Multipliers::factorize() {
+bool Multipliers::factorize(double s) {
   if (!constraints_) return true;
   const double* g = gradients_.valuePtr();
   for (std::size_t entry = 0; entry + 1 < first_term_.size(); ++entry) {
@@ -78,6 +78,10 @@ bool Multipliers::factorize() {
       sum += g[term.a] * g[term.b] * per_mass_[term.unknown];
     }
     matrix_.valuePtr()[entry] = sum;
+  }
+  for (Index k = 0; s > 0 && k < matrix_.cols(); ++k) {
+    // The diagonal entry is the first of its column.
+    matrix_.valuePtr()[matrix_.outerIndexPtr()[k]] += s * constraints_->compliances()[k];
   }
   return factors_->factorize_positive(0, -1, matrix_);
 }
@@ -119,7 +123,7 @@ const Vec& Multipliers::forces_at(const At& at, const ConstVec& f) {
 const Vec& Multipliers::project_velocities(const At& at, Vec& v) {
   if (!constraints_) return lambda_;
   constraints_->constraint_rates(at, right_);
-  right_ += gradients_ * v;
+  right_.noalias() += gradients_ * v;
   solve(right_, lambda_);
   add_pull(-1, lambda_, v);
   return lambda_;

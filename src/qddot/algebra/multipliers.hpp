@@ -27,8 +27,9 @@ class Multipliers {
   const GradientMatrix& gradients() const { return gradients_; }
   // Computes G at a place.
   void take_gradients(const At& at);
-  // Factorises A of the present G. Returns false if it is not positive definite.
-  bool factorize();
+  // Factorises A of the present G, or A + s diag(c) with the compliances c. Returns false if it is
+  // not positive definite.
+  bool factorize(double s = 0);
   // x = A^-1 b, by the last factors; b, x: m.
   void solve(const Vec& b, Vec& x);
   // Adds s M^-1 G'x to `v`, by the present G; x: m, v: n.

@@ -59,6 +59,7 @@ struct Network {
     Eigen::Vector3d point;
     double length;  // [m], > 0
     int curve = -1;
+    double compliance = 0;  // [m/N], see Constraints
   };
   // A force factor curve(t) on a node [N], with V = -force.(x - origin).
   struct DrivenLoad {

@@ -19,6 +19,7 @@ class Rods final : public Constraints {
   Rods(const Network& network, const Layout<D>& layout, const DrivenNetwork<D>& driven)
       : driven_(driven) {
     std::vector<Eigen::Triplet<double>> entries;
+    compliances_.resize(std::ssize(network.rods));
     for (const Network::Rod& rod : network.rods) {
       const int i = layout.first(rod.i), j = rod.j < 0 ? -1 : layout.first(rod.j);
       for (int a = 0; a < D; ++a) {
@@ -26,8 +27,10 @@ class Rods final : public Constraints {
         entries.emplace_back(k, i + a, 0);
         if (j >= 0) entries.emplace_back(k, j + a, 0);
       }
+      compliances_[std::ssize(rods_)] = rod.compliance;
       rods_.push_back({i, j, rod.point.template head<D>(), rod.length, rod.curve});
     }
+    if (compliances_.isZero(0)) compliances_.resize(0);
     pattern_.resize(std::ssize(rods_), layout.first(static_cast<int>(layout.nodes())));
     pattern_.setFromTriplets(entries.begin(), entries.end());
   }
@@ -88,6 +91,8 @@ class Rods final : public Constraints {
     return all;
   }
 
+  const Vec& compliances() const override { return compliances_; }
+
  private:
   // i, j: first unknowns; j < 0 at a point.
   struct Rod {
@@ -122,6 +127,7 @@ class Rods final : public Constraints {
 
   const DrivenNetwork<D>& driven_;
   std::vector<Rod> rods_;
+  Vec compliances_;
   GradientMatrix pattern_;
 };
 

@@ -54,8 +54,9 @@ struct SpringLaw {
   // The strain (l - l0)/l0 > 0 at which it breaks.
   double breaks_at = std::numeric_limits<double>::infinity();
   bool pulls_only = false;
-  // Whether it is a rod: its length stays l0 > 0, and the other numbers are zero. A rod has no
-  // energy and no force of its own; multipliers keep its length (see Constraints).
+  // Whether it is a rod: its length stays l0 > 0. A rod has no energy and no force of its own;
+  // multipliers keep its length (see Constraints). All other numbers are zero, but for the check of
+  // a rod that stands for a spring: then `stiffness` is the spring's.
   bool rigid = false;
 
   // A cable of rest length zero is never slack.

@@ -96,6 +96,19 @@ void make_rods_above(double stiffness, Scene& scene) {
   }
 }
 
+std::vector<double> stiffness_gaps(const Scene& scene, double ratio) {
+  std::vector<double> all;
+  for (const Spring& spring : scene.springs) {
+    if (spring.law.stiffness > 0) all.push_back(spring.law.stiffness);
+  }
+  std::ranges::sort(all, std::ranges::greater());
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (all[i - 1] >= ratio * all[i]) gaps.push_back(all[i]);
+  }
+  return gaps;
+}
+
 void validate_rods(const Scene& scene, const std::string& source) {
   std::vector<Drawn> rods;
   double size = 0, speed = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "qddot/scene/scene.hpp"
 
@@ -12,6 +13,10 @@ bool has_rods(const Scene& scene);
 // Makes rods of all springs with more than this stiffness [N/m] that have a node which moves. Their
 // rest lengths, quartic terms and all else stay behind: a rod has the spring's rest length.
 void make_rods_above(double stiffness, Scene& scene);
+
+// The stiffnesses [N/m] of the scene's springs that have a gap above them: the next larger one is
+// `ratio` times as large or more. Descending. Springs of stiffness zero do not count.
+std::vector<double> stiffness_gaps(const Scene& scene, double ratio);
 
 // Throws InvalidInput, in a sentence that starts with `source` and names the rod by its nodes,
 // unless

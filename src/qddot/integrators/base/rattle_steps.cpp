@@ -68,8 +68,8 @@ Outcome RattleSteps::stage(double t, double s, X& next) {
   if (has_dashpots_) {
     half_ = next.v;
     next.work.dissipated -= s / 4 * product_with_sum(before_, half_, next.friction);
-    const Vec predicted = 2 * half_ - before_;
-    force({t + s, next.q, predicted}, next.f);
+    before_ = 2 * half_ - before_;  // the predicted velocity
+    force({t + s, next.q, before_}, next.f);
     take_friction(next.friction);
   } else {
     force({t + s, next.q}, next.f);
@@ -89,22 +89,25 @@ Outcome RattleSteps::drift(double t, double s, X& next) {
   if (constraints_) {
     if (is_driven()) constraints_->constraint_rates(place(t, next.q), rates_);
     lambda_ = next.mu + s / next.size * next.change;
+    const Vec& compliances = constraints_->compliances();
+    const double to_force = 2 / (s * length);
+    if (compliances.size() > 0 && !multipliers_.factorize(to_force)) return no_solution(t);
     multipliers_.add_pull(-s / 2, lambda_, next.v);
     next.q += length * next.v;
     const double rounding = multipliers_.rounding(next.q);
     double last = std::numeric_limits<double>::infinity();
     for (int i = 0;; ++i) {
       constraints_->constraint_values(place(t + s, next.q), g_);
+      if (compliances.size() > 0) g_ -= compliances.cwiseProduct(lambda_);
       const double worst = g_.lpNorm<Eigen::Infinity>();
       if (worst <= rounding) break;
       if (worst > last / 2 && worst <= most_roundings * rounding) break;
       if (i == most_iterations || !std::isfinite(worst)) return no_solution(t);
       last = worst;
       multipliers_.solve(g_, solved_);
-      ++counts().solves;
       multipliers_.add_pull(-1, solved_, next.q);
       multipliers_.add_pull(-1 / length, solved_, next.v);
-      lambda_ += 2 / (s * length) * solved_;
+      lambda_ += to_force * solved_;
     }
     next.change = lambda_ - next.mu;
     next.size = s;
@@ -124,7 +127,6 @@ Outcome RattleSteps::kick_along_constraints(double t, double s, X& next) {
   if (!factorize_at(t, next.q)) return no_solution(t);
   const At here = place(t, next.q);
   if (is_driven()) constraints_->constraint_rates(here, rates_);
-  ++counts().solves;
   next.mu = 2 / s * multipliers_.project_velocities(here, next.v);
   if (is_driven()) add_work_of_impulse(s / 2, next.mu, next);
   return Outcome::reached_end;
@@ -136,7 +138,6 @@ void RattleSteps::add_work_of_impulse(double s, const Vec& impulse, X& next) con
 
 bool RattleSteps::factorize_at(double t, const Vec& q) {
   multipliers_.take_gradients(place(t, q));
-  ++counts().factorizations;
   const bool is_regular = multipliers_.factorize();
   time_of_factors_ = is_regular ? t : std::numeric_limits<double>::quiet_NaN();
   return is_regular;

@@ -66,7 +66,8 @@ void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
     const bool is_anchor = i == no_number || j == no_number;
     network.rods.push_back({i == no_number ? j : i, is_anchor ? -1 : j,
                             is_anchor ? half.y[pin] : Eigen::Vector3d(Eigen::Vector3d::Zero()),
-                            law.rest_length, is_anchor ? curves.of_node(pin, signs) : -1});
+                            law.rest_length, is_anchor ? curves.of_node(pin, signs) : -1,
+                            law.stiffness > 0 ? 1 / law.stiffness : 0});
   } else if (!law.is_plain()) {  // likewise
     const std::size_t pin = i == no_number ? from : to;
     const bool is_anchor = i == no_number || j == no_number;

@@ -8,7 +8,7 @@
 
 namespace qddot {
 
-// Reductions of a scene that do not change its motion.
+// Reductions of a scene that do not change its motion; the last one not by more than asked for.
 enum class Reduction {
   pins,                // pinned nodes are no unknowns
   duplicates,          // springs between the same nodes are one, springs of no stiffness none
@@ -19,12 +19,13 @@ enum class Reduction {
   mirror,              // one half is enough of a motion that is its own mirror image
   constant_stiffness,  // K is the same everywhere, and is factorised once
   falling,             // a part to which nothing is pinned falls in closed form
+  rods,                // stiff springs are rods; only of answers to an accuracy (solve_with_rods)
 };
 
 // The names of the reductions, in the order of Reduction.
-inline constexpr std::array<std::string_view, 9> reduction_names = {
+inline constexpr std::array<std::string_view, 10> reduction_names = {
     "pins",      "duplicates", "massless",           "free_flight", "parts",
-    "dimension", "mirror",     "constant_stiffness", "falling"};
+    "dimension", "mirror",     "constant_stiffness", "falling",     "rods"};
 
 constexpr std::string_view name(Reduction reduction) {
   return reduction_names[static_cast<std::size_t>(reduction)];
