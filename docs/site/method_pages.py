@@ -19,7 +19,13 @@ ACCURACIES = tuple(10.0**-digit for digit in range(1, 9))
 # A method that takes at most so many times as long as the fastest one is near it.
 NEAR = 1.5
 DRIFTS = ("drift_fpu", "drift_orbit", "drift_cloth")
-NEEDS = ("needs_stiffness", "needs_constant_stiffness", "needs_split", "needs_laplacian")
+NEEDS = (
+    "needs_stiffness",
+    "needs_constant_stiffness",
+    "needs_split",
+    "needs_laplacian",
+    "needs_rods",
+)
 VERDICTS = ("lives", "is damped", "is killed", "blows up")
 
 
@@ -108,7 +114,9 @@ class Method:
     @property
     def lacks_scenes(self):
         """Whether the scenes that do not have it lack what it needs, and it is not just new."""
-        has_needs = self.has("needs_split") or self.has("needs_constant_stiffness")
+        has_needs = any(
+            self.has(need) for need in ("needs_split", "needs_constant_stiffness", "needs_rods")
+        )
         is_new = not self.places and any(self.is_missing(chart) for chart in CHARTS)
         return has_needs and not is_new
 
@@ -119,6 +127,8 @@ class Method:
             return "stock"
         if self.has("needs_constant_stiffness"):
             return "exact"
+        if self.has("needs_rods"):
+            return "rods"
         first = "implicit" if self.has("implicit") else "explicit"
         if self.has("needs_split"):
             return f"{first}, stiff springs apart"

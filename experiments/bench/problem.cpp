@@ -18,6 +18,7 @@ Reference reference_of(const Scene& drawn, const Scene& start, const Model& scen
                        const std::string& folder, const nlohmann::json& origin) {
   require_kept_energy(drawn, drawn.name,
                       "the other solvers are asked for motions that keep their energy");
+  require_no_rods(drawn, drawn.name, "the other solvers are not asked for them");
   const auto is_plain = [](const Spring& spring) { return spring.law.is_plain(); };
   if (!std::ranges::all_of(drawn.springs, is_plain)) {
     throw InvalidInput(

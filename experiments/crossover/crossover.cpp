@@ -17,8 +17,10 @@
 //     tried at larger ratios.
 //  3. points.csv has every point. crossover.csv has, for each ratio and accuracy from 1e-1 to 1e-6,
 //     the fastest method and the next. kinds.csv has the fastest of each kind: explicit, implicit,
-//     split (stiff springs apart from the others). Fields are empty if no method reached the
-//     accuracy, or if the reference does not certify it.
+//     split (stiff springs apart from the others), rods (in place of the stiff springs, where those
+//     can be rods; errors are against the motion of the springs). rods.csv has what rods change, as
+//     a position error at the end. Fields are empty if no method
+//     reached the accuracy, or if the reference does not certify it.
 //
 // Expected results: the largest step of an explicit method is c / w_max, and w_max grows as
 // sqrt(ratio). If that limit and not the accuracy decides, the method takes
@@ -64,9 +66,24 @@ void require_ratio(double ratio, const std::string& option) {
 // they are at the largest.
 std::vector<const Method*> competitors(const std::vector<std::string>& list,
                                        const Subject& stiffest) {
+  if (!list.empty()) {
+    std::vector<std::string> others = list;
+    std::erase_if(others, [](const std::string& name) {
+      return method_named(name, "--methods").asks(Need::constraints);
+    });
+    auto selected =
+        others.empty() ? std::vector<const Method*>() : select_methods(others, stiffest);
+    for (const std::string& name : list) {
+      if (method_named(name, "--methods").asks(Need::constraints))
+        selected.push_back(&method_named(name, "--methods"));
+    }
+    return selected;
+  }
   auto selected = select_methods(list, stiffest);
-  if (list.empty())
-    std::erase_if(selected, [](const Method* method) { return !method->stock_of.empty(); });
+  std::erase_if(selected, [](const Method* method) { return !method->stock_of.empty(); });
+  for (const Method& method : methods()) {
+    if (method.asks(Need::constraints)) selected.push_back(&method);
+  }
   return selected;
 }
 
@@ -107,6 +124,7 @@ int main(int argc, char** argv) {
       "crossover.csv", {"stiffness_ratio", "accuracy", "method", "time_s", "runner_up", "margin"});
   auto& of_kinds =
       p.table("kinds.csv", {"stiffness_ratio", "accuracy", "kind", "method", "time_s"});
+  auto& changes = p.table("rods.csv", {"stiffness_ratio", "change"});
   auto& points = p.table("points.csv", point_columns_with_ratio());
   return p.run(argc, argv, [&] {
     const StiffFamily family =
@@ -142,7 +160,10 @@ int main(int argc, char** argv) {
           }
         },
         [&] {
-          for (const AtRatio& one : all) tabulate(one, methods, winners, of_kinds, points);
+          for (const AtRatio& one : all) {
+            tabulate(one, methods, winners, of_kinds, points);
+            if (one.with_rods) changes->row(one.ratio, one.with_rods->change);
+          }
           const nlohmann::json origin = origin_of(p, all);
           // A ratio that is not measured yet has no winner.
           all.erase(all.begin() + complete, all.end());

@@ -21,14 +21,16 @@ from measurements import parse, read_facts, read_rows
 from sheet import Sheet, main
 from style import INK, number, power_of_ten
 
-KINDS = {"explicit": "#D55E00", "implicit": "#0072B2", "split": "#009E73"}
+KINDS = {"explicit": "#D55E00", "implicit": "#0072B2", "split": "#009E73", "rods": "#CC79A7"}
 TITLES = {
     "explicit": "explicit",
     "implicit": "implicit",
     "split": "split: stiff springs apart",
+    "rods": "rods in their place",
 }
 FAMILIES = {
     "frame": ("a soft cloth in a stiff frame", "frame / cloth"),
+    "hem": ("a soft cloth with a stiff hem", "hem / cloth"),
     "whole": ("a cloth stiff against its weight", "k L / (m g)"),
     "chain": ("a chain with a stiff middle third", "stiff / soft springs"),
 }

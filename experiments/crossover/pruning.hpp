@@ -7,18 +7,19 @@
 
 namespace qddot::crossover {
 
-enum class Kind { explicit_steps, implicit_steps, split };
-constexpr std::array kinds = {Kind::explicit_steps, Kind::implicit_steps, Kind::split};
+enum class Kind { explicit_steps, implicit_steps, split, rods };
+constexpr std::array kinds = {Kind::explicit_steps, Kind::implicit_steps, Kind::split, Kind::rods};
 
 // As it is written to tables.
 constexpr const char* kind_name(Kind kind) {
-  constexpr std::array names = {"explicit", "implicit", "split"};
+  constexpr std::array names = {"explicit", "implicit", "split", "rods"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 // Methods that separate stiff and soft forces are split, whichever of them they integrate
-// implicitly.
+// implicitly. Those that keep constraints run the scene with rods in place of its stiff springs.
 inline Kind kind_of(const Method& method) {
+  if (method.asks(Need::constraints)) return Kind::rods;
   if (method.asks(Need::split_forces)) return Kind::split;
   return method.is(Trait::implicit) ? Kind::implicit_steps : Kind::explicit_steps;
 }

@@ -8,14 +8,45 @@
 
 #include "experiments/kit/points.hpp"
 #include "experiments/kit/reference_file.hpp"
+#include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/speed/ladder_points.hpp"
+#include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/rods.hpp"
 
 namespace qddot::crossover {
 namespace {
 
 // The reference is asked for a tenth of the finest accuracy.
 constexpr double needed = Pruning::accuracies.back() / 10;
+
+// The least tolerance with which the motion with rods is known, for what they change.
+constexpr double fine_rtol = 1e-12;
+
+std::shared_ptr<const WithRods> with_rods(const AtRatio& one) {
+  Scene scene = one.subject.drawn;
+  if (!scene.stiff_above) return nullptr;
+  make_rods_above(*scene.stiff_above, scene);
+  try {
+    validate_rods(scene, scene.name);
+  } catch (const InvalidInput&) {
+    return nullptr;  // more rods than the nodes can bear
+  }
+  Model model(scene);
+  const Method& method = *find_method("arkode_erk8_rods");
+  if (!applies_to(method, model.system())) return nullptr;
+  const Reference& of_springs = *one.reference;
+  Reference reference = of_springs;
+  reference.end = model.collect(one.subject.model.expand(of_springs.end), of_springs.end.t);
+  reference.energy = model.energy(model.initial());
+  State end = model.initial();
+  make_integrator(method, model.system(), options_for(method, fine_rtol, model))
+      ->advance(end, one.subject.until);
+  const double change =
+      errors_between(model, end, reference.end, reference.energy, reference.scales).position;
+  return std::make_shared<const WithRods>(WithRods{std::move(model), std::move(reference), change});
+}
 
 std::string name_of(const Point* point) { return point ? point->method->name : ""; }
 double time_of(const Point* point) {
@@ -30,6 +61,7 @@ void RatioRace::measure(Study& study, AtRatio& one, const std::string& folder,
   progress().stage(fmt::format("ratio {:g}: making the reference", one.ratio));
   try {
     one.reference = reference_for(s.drawn, s.start(), s.model, s.until, folder, origin, needed);
+    one.with_rods = with_rods(one);
     measure_methods(study, one);
   } catch (const NoReference& error) {
     say(fmt::format("crossover: ratio {:g}: {}; its cells are left empty", one.ratio,
@@ -67,15 +99,19 @@ void RatioRace::measure_methods(Study& study, AtRatio& one) {
 void RatioRace::measure_all(Study& study, const AtRatio& one, Pruning& pruning,
                             PointsOfMethods& points) {
   std::vector<const Method*> fitting = methods_;
-  std::erase_if(fitting, [&](const Method* m) { return !applies_to(*m, one.subject.system()); });
+  std::erase_if(fitting, [&](const Method* m) {
+    return m->asks(Need::constraints) ? !one.with_rods : !applies_to(*m, one.subject.system());
+  });
   progress().begin(fitting.size());
   for (const Method* method : fitting) {
     Effort effort = effort_;
     effort.seconds = std::min(effort.seconds, pruning.seconds_of_interest());
     effort.recall = points_of(study, one.name() + " ", fmt::format("ratio {:g}: ", one.ratio));
     std::vector<Point>& own = points[method];
+    const bool has_rods = method->asks(Need::constraints);
     measure_ladder(
-        *method, one.subject.model, one.subject.until, *one.reference, effort,
+        *method, has_rods ? one.with_rods->model : one.subject.model, one.subject.until,
+        has_rods ? one.with_rods->reference : *one.reference, effort,
         [&](const Point& point) { own.push_back(point); },
         [&](const Point& point) { return pruning.is_over(point); });
     std::ranges::sort(own, std::ranges::greater(), &Point::value);
@@ -115,11 +151,10 @@ nlohmann::json origin_of(const Program& p, const std::vector<AtRatio>& all) {
   origin["until"] = all.front().subject.until;
   for (const AtRatio& one : all) {
     const auto whole = p.origin(one.subject);
-    nlohmann::json entry = {{"stiffness_ratio", one.ratio},
-                            {"scene", whole.at("scene")},
-                            {"reduced", whole.at("reduced")},
-                            {"certified_position", nullptr},
-                            {"reference_made_by", nullptr}};
+    nlohmann::json entry = {{"stiffness_ratio", one.ratio},   {"scene", whole.at("scene")},
+                            {"reduced", whole.at("reduced")}, {"certified_position", nullptr},
+                            {"reference_made_by", nullptr},   {"change_by_rods", nullptr}};
+    if (one.with_rods) entry["change_by_rods"] = one.with_rods->change;
     if (one.reference) {
       entry["certified_position"] = one.reference->certified.position;
       entry["reference_made_by"] = one.reference->made_by;

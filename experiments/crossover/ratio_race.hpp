@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,12 +13,21 @@
 
 namespace qddot::crossover {
 
+// The scene of a ratio with rods in place of its stiff springs, and the reference of the springs in
+// its unknowns. So errors of its runs are those of a method and of what the rods change.
+struct WithRods {
+  Model model;
+  Reference reference;
+  double change = 0;  // what the rods change, as a position error
+};
+
 // One ratio of stiffnesses: its scene, and what was measured on it.
 struct AtRatio {
   double ratio;
   Subject subject;
-  std::optional<Reference> reference{};  // none could be made
-  std::vector<Point> points{};           // in the order of the registry
+  std::optional<Reference> reference{};         // none could be made
+  std::shared_ptr<const WithRods> with_rods{};  // nullptr if the springs can be no rods
+  std::vector<Point> points{};                  // in the order of the registry
   std::vector<Placing> placings{};
 
   // As its share and the points in the journal are named.

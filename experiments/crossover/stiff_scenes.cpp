@@ -26,6 +26,18 @@ Scene frame(int nodes, double until, double ratio) {
   return scene;
 }
 
+Scene hem(int nodes, double until, double ratio) {
+  constexpr double cloth = 1000;  // [N/m]
+  Scene scene = drawn("hemmed_cloth",
+                      {{"nodes", nodes},
+                       {"until", until},
+                       {"structural_stiffness", cloth},
+                       {"hem_stiffness", cloth * ratio}},
+                      "hem");
+  if (ratio == 1) scene.stiff_above.reset();
+  return scene;
+}
+
 Scene whole(int nodes, double until, double ratio) {
   constexpr double mass = 0.5, side = 1;  // [kg], [m]
   const double k = ratio * mass * gravity / side;
@@ -60,6 +72,7 @@ Scene chain(int nodes, double until, double ratio) {
 const std::vector<StiffFamily>& stiff_families() {
   static const std::vector<StiffFamily> all = {
       {"frame", "a soft cloth in a stiff frame", 12, 0.25, frame},
+      {"hem", "a soft cloth with a stiff hem", 12, 0.25, hem},
       {"whole", "a cloth that is stiff against its weight", 12, 0.25, whole},
       {"chain", "a chain with a stiff middle third", 30, 0.25, chain}};
   return all;

@@ -18,11 +18,13 @@ struct StiffFamily {
 
 // All families:
 //   frame  framed_cloth, its frame `ratio` times as stiff as its cloth;
+//   hem    hemmed_cloth, its hem `ratio` times as stiff as its cloth;
 //   whole  cloth, all of it stiff against its weight: k = ratio m g / L between neighbours, so that
 //          its weight stretches it by about 1 / ratio of its size;
 //   chain  chain on one pinned end, the springs of its middle third `ratio` times as stiff as the
 //          others, of which k_soft = 1000 N m g / L for N springs.
-// frame and chain name their stiff springs where ratio > 1. All else is as the generators have it.
+// frame, hem and chain name their stiff springs where ratio > 1. All else is as the generators have
+// it.
 const std::vector<StiffFamily>& stiff_families();
 
 }  // namespace qddot::crossover

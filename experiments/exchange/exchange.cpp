@@ -91,6 +91,7 @@ int main(int argc, char** argv) {
   return p.run(argc, argv, [&] {
     Subject subject = subject_of(scene, until);
     require_kept_energy(subject.drawn, subject.source, "its energy is not kept");
+    require_no_rods(subject.drawn, subject.source, "its small vibrations are not those of K alone");
     require_reference_exists(subject);
     const auto selected = fixed_step_among(methods, subject);
     const Excitation excitation = [&] {

@@ -15,6 +15,7 @@
 #include "qddot/integrators/misfit_words.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
+#include "qddot/scene/rods.hpp"
 #include "qddot/scene/scene_file.hpp"
 #include "qddot/scene/settle.hpp"
 
@@ -116,6 +117,12 @@ void require_kept_energy(const Scene& drawn, const std::string& source, const st
       "{}: it is damped, and {}; allowed are scenes without damping and air_damping", source, why));
 }
 
+void require_no_rods(const Scene& drawn, const std::string& source, const std::string& why) {
+  if (!has_rods(drawn)) return;
+  throw InvalidInput(fmt::format(
+      "{}: it has rods, and {}; allowed are scenes without rods and rods_above", source, why));
+}
+
 void require_fit(const Method& method, const Model& model, const std::string& source) {
   const auto why = misfit(method, model.system());
   const auto others = [&] {
@@ -132,6 +139,10 @@ void require_fit(const Method& method, const Model& model, const std::string& so
         "{}: stiff_above: it is missing, and {} integrates the forces of stiff springs apart from "
         "the others; allowed are finite numbers above 0 in N/m, or the methods {}",
         source, method.name, others()));
+  }
+  if (why == Outcome::refuses_constraints || why == Outcome::no_constraints) {
+    throw InvalidInput(fmt::format("{}: rods: {}: {}; allowed are {}", source, method.name,
+                                   misfit_words(method, *why), others()));
   }
   if (why == Outcome::refuses_damping) {
     throw InvalidInput(fmt::format("{}: damping: {}: {}; allowed are {}", source, method.name,

@@ -68,6 +68,8 @@ void require_fit(const Method& method, const Model& model, const std::string& so
 // Throws InvalidInput if the scene is damped or driven, or a spring may break. `why` completes "it
 // is damped, and ...".
 void require_kept_energy(const Scene& drawn, const std::string& source, const std::string& why);
+// Throws InvalidInput, with the reason `why`, if the scene has rods.
+void require_no_rods(const Scene& drawn, const std::string& source, const std::string& why);
 
 // The method of that name, which the option has. Throws InvalidInput if there is none.
 const Method& method_named(const std::string& name, const std::string& option);

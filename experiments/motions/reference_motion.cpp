@@ -7,6 +7,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/timing.hpp"
+#include "qddot/measure/reference/reference_ways.hpp"
 
 namespace qddot::motions {
 namespace {
@@ -63,7 +64,7 @@ std::optional<ReferenceMotion> reference_motion(const std::vector<double>& times
     best = {&method, value, std::move(states), error};
     return true;
   };
-  const Method& composition = *find_method("kahan_li8");
+  const Method& composition = resolving_method(scene.system());
   for (double steps = std::max(fewest_steps, static_cast<double>(times.size() - 1));
        steps <= most_steps && seconds_since(start) < seconds; steps *= refinement) {
     // Below what is certified nothing can be told; where an error grows again, rounding has it.

@@ -39,7 +39,7 @@ void print_methods(bool as_csv, bool with_newer) {
     Csv csv({"name", "order", "family", "knob", "implicit", "symplectic", "needs_stiffness",
              "accepts_massless", "needs_constant_stiffness", "needs_split", "needs_laplacian",
              "takes_iterations", "summary", "source", "stock_of", "needs_sundials", "damping",
-             "why_not_damped", "driving"});
+             "why_not_damped", "driving", "needs_rods"});
     for (const Method& m : listed) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
               yes(m.is(Trait::symplectic)),
@@ -48,7 +48,7 @@ void print_methods(bool as_csv, bool with_newer) {
               yes(m.asks(Need::split_forces)), yes(m.asks(Need::laplacian)),
               yes(m.listens_to(Option::iterations)), m.summary, m.source, m.stock_of,
               sundials_needed(m), damping_word(m.takes_damping()), m.why_not_damped,
-              m.asks(Need::autonomous) ? "refuses" : "keeps order");
+              m.asks(Need::autonomous) ? "refuses" : "keeps order", yes(m.asks(Need::constraints)));
     }
     fmt::print("{}", csv.text());
     return;

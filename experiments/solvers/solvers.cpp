@@ -111,6 +111,7 @@ int main(int argc, char** argv) {
   return p.run(argc, argv, [&] {
     const auto kinds = select_solvers(names);
     const Subject subject = subject_of(choice);
+    require_no_rods(subject.drawn, subject.source, "steps of implicit methods do not keep them");
     require_unknowns(subject);
     const System& system = subject.system();
     const int threads = omp_get_max_threads();

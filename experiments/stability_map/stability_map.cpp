@@ -110,6 +110,7 @@ int main(int argc, char** argv) {
       if (vary->empty()) require_positive(amplitude, "--amplitudes", "a distance from rest");
     }
     const Subject subject = subject_of(choice, until);
+    require_no_rods(subject.drawn, subject.source, "its small vibrations are not those of K alone");
     const auto selected = select_methods(methods, subject);
     progress().stage("finding the equilibrium");
     const std::optional<Scene> rest = at_rest(subject);

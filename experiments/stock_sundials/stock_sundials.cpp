@@ -87,6 +87,7 @@ int main(int argc, char** argv) {
                          "stock_stiffness stock_factorization stock_solve stock_rest"));
   return p.run(argc, argv, [&] {
     const Subject subject = subject_of(choice, until);
+    require_no_rods(subject.drawn, subject.source, "one way alone of SUNDIALS keeps them");
     require_reference_exists(subject);
     const auto pairs = select_pairs(names, subject);
     const auto origin = p.origin(subject);

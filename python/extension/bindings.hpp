@@ -23,6 +23,9 @@ struct HeldModel {
   std::shared_ptr<const Scene> start{};
 };
 
+// All reductions but these; throws std::invalid_argument for a name that is none.
+Reductions reductions_without(const std::vector<std::string>& kept);
+
 // A certified motion and its model.
 struct HeldReference {
   HeldModel of;

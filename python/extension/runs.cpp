@@ -1,23 +1,69 @@
+#include <limits>
+
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
-#include "qddot/measure/advice/solve.hpp"
+#include "qddot/algebra/constraint_forces.hpp"
+#include "qddot/measure/advice/solve_with_rods.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/stability/diagnosis.hpp"
 #include "qddot/measure/stability/energy_loss.hpp"
+#include "qddot/scene/rods.hpp"
 
 namespace qddot::python {
 namespace {
 using py::arg;
 
+// The tensions of rods [N] at some states, (states, springs of the scene): 0 for a rod in a part
+// that rests in its fall, NaN for springs that are none. None without rods.
+class Tensions {
+ public:
+  explicit Tensions(const HeldModel& held) : held_(held), forces_(held.model->system()) {
+    if (!held.start) return;
+    for (const Spring& spring : held.start->springs) {
+      none_.push_back(spring.law.rigid ? 0 : std::numeric_limits<double>::quiet_NaN());
+    }
+    has_rods_ = has_rods(*held.start);
+  }
+  void see(const State& state) {
+    if (!has_rods_) return;
+    std::vector<double> row = none_;
+    const Vec& own = forces_.at(state);
+    const std::vector<std::size_t>& rods = held_.model->rods();
+    for (std::size_t k = 0; k < rods.size(); ++k) row[rods[k]] = own[static_cast<Index>(k)];
+    rows_.insert(rows_.end(), row.begin(), row.end());
+  }
+  py::object array() const {
+    if (!has_rods_) return py::none();
+    const std::size_t width = none_.size();
+    py::array_t<double> all({rows_.size() / width, width});
+    std::ranges::copy(rows_, all.mutable_data());
+    return all;
+  }
+
+ private:
+  const HeldModel& held_;
+  ConstraintForces forces_;
+  std::vector<double> none_, rows_;
+  bool has_rods_ = false;
+};
+
+// That of one state.
+py::object tensions_of(const HeldModel& held, const State& state) {
+  Tensions tensions(held);
+  tensions.see(state);
+  return tensions.array();
+}
+
 // The caller's arrays that a run fills at the observed times: positions and velocities (2, times,
 // nodes, dimension), energies (6, times).
 class Frames {
  public:
-  Frames(const Model& model, std::vector<double> times, py::array_t<double>& motion,
+  Frames(const HeldModel& held, std::vector<double> times, py::array_t<double>& motion,
          std::optional<py::array_t<double>>& energies)
-      : model_(model),
+      : model_(*held.model),
+        tensions_(held),
         times_(std::move(times)),
         motion_(motion.mutable_data()),
         block_(static_cast<std::size_t>(motion.size()) / 2),
@@ -29,10 +75,12 @@ class Frames {
     return {times_, [this](const State& state) { see(state); }};
   }
   std::size_t seen() const { return seen_; }
+  py::object tensions() const { return tensions_.array(); }
 
  private:
   void see(const State& state) {
     const auto nodes = model_.expand(state);
+    tensions_.see(state);
     double* to = motion_ + seen_ * frame_;
     write(nodes, &Node::position, model_.dimension(), to);
     write(nodes, &Node::velocity, model_.dimension(), to + block_);
@@ -49,6 +97,7 @@ class Frames {
   }
 
   const Model& model_;
+  Tensions tensions_;
   std::vector<double> times_;
   double* motion_;
   std::size_t block_, frame_;
@@ -95,7 +144,7 @@ py::dict run(const HeldModel& held, const std::string& name, const py::dict& giv
              int threads) {
   const Options options = options_of(given);
   std::optional<Simulation> simulation;
-  Frames frames(*held.model, times, motion, energies);
+  Frames frames(held, times, motion, energies);
   Summary summary;
   double seconds = 0;
   outside(threads, [&](const std::stop_token& stop) {
@@ -107,7 +156,8 @@ py::dict run(const HeldModel& held, const std::string& name, const py::dict& giv
     });
   });
   return py::dict(arg("summary") = record_of(summary), arg("seconds") = seconds,
-                  arg("seen") = frames.seen(),
+                  arg("seen") = frames.seen(), arg("tensions") = frames.tensions(),
+                  arg("end_tensions") = tensions_of(held, simulation->state()),
                   arg("end") = end_of(*held.model, simulation->state()),
                   arg("energies") = energies_of(*held.model, simulation->state()),
                   arg("breaks") = breaks_of(*held.model, summary, {}),
@@ -115,26 +165,36 @@ py::dict run(const HeldModel& held, const std::string& name, const py::dict& giv
 }
 
 // The motion to an accuracy.
-py::dict answer(const HeldModel& held, double until, double accuracy, const std::string& of,
-                std::optional<double> most_seconds, int threads) {
+py::dict answer(HeldModel held, const std::vector<std::string>& kept, double until, double accuracy,
+                const std::string& of, std::optional<double> most_seconds, int threads) {
   Wanted wanted{.accuracy = accuracy, .of = accuracy_of(of)};
   if (most_seconds) wanted.seconds = *most_seconds;
+  const Reductions reductions = reductions_without(kept);
+  std::optional<RodsAnswer> with_rods;
   Answer found;
   outside(threads, [&](const std::stop_token&) {
-    found = solve(*held.model, until, wanted, held.start.get());
+    if (held.start) with_rods = solve_with_rods(*held.start, reductions, until, wanted);
+    found = with_rods ? with_rods->answer : solve(*held.model, until, wanted, held.start.get());
   });
+  if (with_rods)
+    held = {with_rods->model, std::make_shared<const Scene>(std::move(with_rods->scene))};
   py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
                   arg("error_estimate_kind") = name(found.error_estimate_kind),
                   arg("horizon") = found.horizon, arg("runs") = found.runs,
                   arg("seconds") = found.seconds.run, arg("seconds_in_all") = found.seconds.total(),
-                  arg("summary") = record_of(found.summary));
+                  arg("summary") = record_of(found.summary), arg("left_out") = "");
+  if (with_rods) {
+    record["left_out"] = with_rods->in_words();
+    record["with_rods"] = held;
+  }
   if (!found.method) return record;
   record["method"] = found.method->name;
   record["value"] = found.value;
   record["looks"] = found.looks;
   record["end"] = end_of(*held.model, found.end);
   record["energies"] = energies_of(*held.model, found.end);
+  record["end_tensions"] = tensions_of(held, found.end);
   record["breaks"] = breaks_of(*held.model, found.summary, found.break_errors);
   return record;
 }

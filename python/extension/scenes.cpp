@@ -104,21 +104,6 @@ py::list generator_records() {
   return all;
 }
 
-Reductions reductions_without(const Names& kept) {
-  Reductions reductions;
-  for (const std::string& name : kept) {
-    const auto found = std::ranges::find(reduction_names, name);
-    if (found == reduction_names.end()) {
-      std::string all;
-      for (const auto other : reduction_names)
-        all += (all.empty() ? "" : ", ") + std::string(other);
-      throw std::invalid_argument("keep: " + name + " is no reduction; allowed are " + all);
-    }
-    reductions = reductions.without(static_cast<Reduction>(found - reduction_names.begin()));
-  }
-  return reductions;
-}
-
 // The smallest system of a scene as it starts (see reduced_for), for a method or for none.
 HeldModel model_of(const std::shared_ptr<Scene>& start, const std::optional<std::string>& name,
                    const Names& kept) {
@@ -224,6 +209,21 @@ py::dict explanation_of(const HeldModel& held) {
 }
 
 }  // namespace
+
+Reductions reductions_without(const Names& kept) {
+  Reductions reductions;
+  for (const std::string& name : kept) {
+    const auto found = std::ranges::find(reduction_names, name);
+    if (found == reduction_names.end()) {
+      std::string all;
+      for (const auto other : reduction_names)
+        all += (all.empty() ? "" : ", ") + std::string(other);
+      throw std::invalid_argument("keep: " + name + " is no reduction; allowed are " + all);
+    }
+    reductions = reductions.without(static_cast<Reduction>(found - reduction_names.begin()));
+  }
+  return reductions;
+}
 
 void add_scenes(py::module_& module) {
   using Shared = std::shared_ptr<Scene>;

@@ -1,6 +1,6 @@
 """The extension: plain data and arrays in and out. Private; its users are the modules beside it."""
 
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,6 +173,7 @@ def run(
 ) -> dict[str, Any]: ...
 def answer(
     model: Model,
+    keep: Sequence[str],
     until: float,
     accuracy: float,
     of: str,

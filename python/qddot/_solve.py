@@ -89,13 +89,15 @@ class Solution:
     alone if none were asked for), and at its end. Called with times, it gives q and v there.
 
     q, v: (times, nodes, dimension), or (times, n) of a System without a dimension; views into one
-    buffer. energy is None for a System without a potential. outcome is "reached_end" or the kind of
+    buffer. energy is None for a System without a potential. tensions: (times, springs) [N] of the
+    scene's rods, NaN for its springs; None without rods. outcome is "reached_end" or the kind of
     failure; message says it in a sentence. seconds is the wall time of the run. energy_growth and
     energy_loss are 1 and 0 for an exact motion: one plus what it gained on the way, and what it
     had lost at the end, over the energy that the motion can turn into speed. If an accuracy was
     asked for: error_estimate bounds the relative error, error_estimate_kind says how the bound was
     made ("compared", "refined", "conserved", "rounding", "none"), is_reached says whether it is at
-    most the accuracy, and the motion is unknown from the time horizon [s] on. breaks lists the
+    most the accuracy, the motion is unknown from the time horizon [s] on, and left_out says in a
+    sentence whether rods stood for stiff springs (keep=["rods"] forbids it). breaks lists the
     springs that broke, in time.
     """
 
@@ -106,6 +108,7 @@ class Solution:
     q: Floats
     v: Floats
     energy: Energy | None
+    tensions: Floats | None
     end: State
     outcome: str
     message: str
@@ -120,6 +123,7 @@ class Solution:
     error_estimate: float | None = None
     error_estimate_kind: str | None = None
     horizon: float | None = None
+    left_out: str = ""
     runs: int = 1
     seconds_in_all: float | None = None
     _diagnose: Callable[[float], str] | None = field(default=None, repr=False, compare=False)
@@ -313,6 +317,7 @@ def _run(
     if times is None:
         return _at_end(start.of, record, state, about)
     energy = None if energies is None else Energy(*energies[:, :seen])
+    about["tensions"] = record["tensions"]
     return _solution(start.of, record, times[:seen], motion[:, :seen], energy, state, about)
 
 
@@ -356,6 +361,7 @@ def _at_end(
     energy = None
     if record.get("energies"):
         energy = Energy(*np.array(record["energies"])[:, None])
+    about["tensions"] = record.get("end_tensions")
     return _solution(of, record, [state.t], motion, energy, state, about)
 
 
@@ -399,8 +405,9 @@ def _answer(
     threads: int,
 ) -> Solution:
     model = start.model()
-    record = _qddot.answer(model, end, accuracy, accuracy_of, seconds, threads)
-    names = "is_reached error_estimate error_estimate_kind horizon runs seconds_in_all seconds"
+    record = _qddot.answer(model, start.keep, end, accuracy, accuracy_of, seconds, threads)
+    start = replace(start, of_answer=record.get("with_rods"))
+    names = "left_out is_reached error_estimate error_estimate_kind horizon runs seconds_in_all seconds"
     about: dict[str, Any] = {name: record[name] for name in names.split()}
     about["accuracy"] = accuracy
     if "method" not in record:  # no run was begun
@@ -439,7 +446,11 @@ def _with_end(run: Solution, record: dict[str, Any]) -> Solution:
         for column, value in zip(columns, record["energies"]):
             column[-1] = value
         energy = Energy(*columns)
-    return replace(run, end=end, q=q, v=v, energy=energy)
+    tensions = run.tensions
+    if tensions is not None:
+        tensions = tensions.copy()
+        tensions[-1] = record["end_tensions"][0]
+    return replace(run, end=end, q=q, v=v, energy=energy, tensions=tensions)
 
 
 def _at(run: Solution, times: list[float]) -> Solution:
@@ -447,4 +458,7 @@ def _at(run: Solution, times: list[float]) -> Solution:
     asked = np.array([t for t in times if t <= run.t_reached])
     rows = np.searchsorted(run.t, asked)
     energy = run.energy and Energy(*(getattr(run.energy, f.name)[rows] for f in fields(Energy)))
-    return replace(run, t=run.t[rows], q=run.q[rows], v=run.v[rows], energy=energy)
+    tensions = None if run.tensions is None else run.tensions[rows]
+    return replace(
+        run, t=run.t[rows], q=run.q[rows], v=run.v[rows], energy=energy, tensions=tensions
+    )

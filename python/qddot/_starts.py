@@ -112,6 +112,8 @@ class Start:
     q0: ArrayLike | None
     v0: ArrayLike | None
     keep: tuple[str, ...]
+    # The model of an answer, where it is not that of the scene.
+    of_answer: _qddot.Model | None = None
 
     def __post_init__(self) -> None:
         # A copy: a diagnosis may ask again after the caller's arrays have changed.
@@ -120,4 +122,6 @@ class Start:
             object.__setattr__(self, name, None if value is None else np.array(value))
 
     def model(self, chosen: Method | None = None) -> _qddot.Model:
+        if self.of_answer is not None:
+            return self.of_answer
         return model_of(self.of, self.q0, self.v0, chosen, self.keep)

@@ -32,7 +32,8 @@ BOOST_AUTO_TEST_CASE(kinds_are_read_from_the_registry) {
   for (const Method& method : methods()) {
     const Kind kind = kind_of(method);
     BOOST_TEST((kind == Kind::split) == method.asks(Need::split_forces));
-    if (!method.asks(Need::split_forces))
+    BOOST_TEST((kind == Kind::rods) == method.asks(Need::constraints));
+    if (!method.asks(Need::split_forces) && !method.asks(Need::constraints))
       BOOST_TEST((kind == Kind::implicit_steps) == method.is(Trait::implicit));
   }
   BOOST_TEST((kind_of(*find_method("verlet")) == Kind::explicit_steps));

@@ -112,6 +112,26 @@ std::vector<Node> Model::expand_beside_falls(const State& state) const {
   return nodes;
 }
 
+State Model::collect(const std::vector<Node>& nodes, double t) const {
+  State state{t, Vec(system().size()), Vec(system().size())};
+  Index at = 0;
+  if (pieces_->is_own) {
+    for (const Node& node : nodes) {
+      state.q.segment(at, pieces_->dimension) = node.position.head(pieces_->dimension);
+      state.v.segment(at, pieces_->dimension) = node.velocity.head(pieces_->dimension);
+      at += pieces_->dimension;
+    }
+    return state;
+  }
+  for (const Part& part : pieces_->parts) {
+    const Index n = part.unknowns();
+    part.collect(nodes, part.fall().displacement(t), part.fall().velocity_at(t),
+                 state.q.segment(at, n), state.v.segment(at, n));
+    at += n;
+  }
+  return state;
+}
+
 std::vector<double> Model::largest_by_part(const Vec& x) const {
   if (pieces_->is_own) {
     if (x.size() == 0) return {};

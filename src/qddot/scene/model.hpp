@@ -61,6 +61,9 @@ class Model {
   // The same without motions in closed form. Parts are seen from the frames that fall with them;
   // other nodes rest where they started. This measures only what is integrated.
   std::vector<Node> expand_beside_falls(const State& state) const;
+  // The state of the unknowns at time t [s] that has these nodes: the inverse of expand(). A motion
+  // that leaves the symmetry of a reduction has no such state; this is then that of its originals.
+  State collect(const std::vector<Node>& nodes, double t) const;
   // The largest |x_i| over the nodes of each part, in the order of nodes_by_part(). x: n,
   // velocities or a difference of positions, which are the same beside any fall. Empty if nodes are
   // condensed, as theirs are no linear functions of x, or if there are no unknowns.

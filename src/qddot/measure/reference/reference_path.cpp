@@ -5,6 +5,7 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/reference/reference_ways.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
@@ -19,7 +20,7 @@ std::vector<State> composed_path(const Model& scene, double h, double until,
   State state = scene.initial();
   const Deadline deadline(seconds);
   const Summary summary =
-      make_integrator(*find_method("kahan_li8"), scene.system(), {.step_size = h})
+      make_integrator(resolving_method(scene.system()), scene.system(), {.step_size = h})
           ->advance(state, until, each, deadline.token());
   stop_if_interrupted();
   if (summary.outcome != Outcome::reached_end) {

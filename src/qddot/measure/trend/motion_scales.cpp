@@ -86,7 +86,8 @@ MotionScales motion_scales(const Model& scene, const Momenta& momenta, double un
   for (int k = 1; k <= steps; ++k) observer.times.push_back(k * h);
   const bool is_massless = scene.system().has_massless();
   const bool has_dashpots = scene.system().damping() && scene.system().damping()->has_dashpots();
-  const Method& method = *find_method(is_massless    ? (has_dashpots ? "bdf2" : "ida")
+  const Method& method = *find_method(is_constrained(scene.system()) ? "arkode_erk8_rods"
+                                      : is_massless  ? (has_dashpots ? "bdf2" : "ida")
                                       : has_dashpots ? "rk4"
                                       : has_k        ? "blanes_moan4"
                                                      : "dprkn8");

@@ -265,6 +265,21 @@ void Part::expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v
   }
 }
 
+void Part::collect(const std::vector<Node>& nodes, const Eigen::Vector3d& displacement,
+                   const Eigen::Vector3d& velocity, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (!images_[i].signs.are_all_plus()) continue;
+    const Unknowns& unknowns = layout_[static_cast<std::size_t>(images_[i].original)];
+    const Node& node = nodes[nodes_[i]];
+    const Eigen::Vector3d y = mirrors_.frame.point(node.position - origin_ - displacement),
+                          w = mirrors_.frame.direction(node.velocity - velocity);
+    for (int a = 0; a < unknowns.count; ++a) {
+      q[unknowns.first + a] = y[unknowns.axis[static_cast<std::size_t>(a)]];
+      v[unknowns.first + a] = w[unknowns.axis[static_cast<std::size_t>(a)]];
+    }
+  }
+}
+
 double Part::largest(const Eigen::Ref<const Vec>& x) const {
   double square = 0;
   for (const Unknowns& unknowns : layout_) {

@@ -68,6 +68,9 @@ class Part {
   void expand(const Eigen::Ref<const Vec>& q, const Eigen::Ref<const Vec>& v,
               const Eigen::Vector3d& displacement, const Eigen::Vector3d& velocity,
               std::vector<Node>& nodes) const;
+  // The inverse: the unknowns `q` and `v` of its originals among the scene's `nodes`.
+  void collect(const std::vector<Node>& nodes, const Eigen::Vector3d& displacement,
+               const Eigen::Vector3d& velocity, Eigen::Ref<Vec> q, Eigen::Ref<Vec> v) const;
   // The largest |x_i| of a node, for velocities or a difference of positions in its unknowns: axes
   // and signs change no length.
   double largest(const Eigen::Ref<const Vec>& x) const;

@@ -1,0 +1,36 @@
+"""The numbers of the page on rods."""
+
+from dataclasses import dataclass
+
+from explicit_or_implicit import of_kind  # noqa: F401 (a function of the page)
+from page_data import figures, rows
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A stiffness ratio and its words."""
+
+    value: float
+    words: str
+
+
+@dataclass(frozen=True)
+class Change:
+    """What rods change at a ratio, in words."""
+
+    ratio: str
+    change: str
+
+
+def ratios():
+    """The ratios of the study."""
+    found = sorted({float(cell["stiffness_ratio"]) for cell in rows("crossover_hem", "kinds.csv")})
+    return [Ratio(value, f"{value:g}") for value in found]
+
+
+def changes():
+    """What rods change at each ratio."""
+    return [
+        Change(f"{float(row['stiffness_ratio']):g}", figures(row["change"], 2))
+        for row in rows("crossover_hem", "rods.csv")
+    ]
