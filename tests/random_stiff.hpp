@@ -149,7 +149,7 @@ inline void StiffScenes::add_grid(std::size_t rows, std::size_t columns, bool is
   }
 }
 
-// Pins one node or more; of those that are chosen twice there are fewer.
+// Pins up to so many nodes, at least one; a node may be chosen twice.
 inline void StiffScenes::pin_some(std::size_t most) {
   const std::size_t count = 1 + below(most);
   for (std::size_t k = 0; k < count; ++k) scene_.nodes[below(scene_.nodes.size())].pinned = true;

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from explicit_or_implicit import of_kind  # noqa: F401 (a function of the page)
+from chart_data import of_kind
 from page_data import figures, rows
 
 

@@ -74,6 +74,17 @@ def ratio(slow, fast):
     return times(slow.seconds / fast.seconds) if slow and fast else NOTHING
 
 
+def kind_at(study, ratio, wanted, kind):
+    """The row of the fastest method of a kind."""
+    return row(study, "kinds.csv", stiffness_ratio=ratio, accuracy=wanted, kind=kind)
+
+
+def of_kind(study, ratio, wanted, kind):
+    """The fastest method of a kind and its time."""
+    cell = kind_at(study, ratio, wanted, kind)
+    return f"{seconds(cell['time_s'])} `{cell['method']}`" if cell["method"] else NOTHING
+
+
 # One kind of methods leads where every other takes at least that many times as long. The times of a
 # study that is repeated differ by some per cent, so a smaller lead is nobody's.
 CLEAR_LEAD = 1.1

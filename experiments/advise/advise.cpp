@@ -21,8 +21,6 @@
 #include "experiments/kit/program.hpp"
 #include "qddot/measure/advice/solve_with_rods.hpp"
 #include "qddot/measure/speed/chart_words.hpp"
-#include "qddot/measure/advice/solve_with_rods.hpp"
-#include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
 namespace qddot::advise_program {

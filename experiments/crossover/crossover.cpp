@@ -43,6 +43,7 @@
 #include "experiments/crossover/stiff_scenes.hpp"
 #include "experiments/kit/allowed_options.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
+#include "qddot/integrators/registry.hpp"
 
 namespace qddot::crossover {
 namespace {

@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
                  });
   return p.run(argc, argv, [&]() -> int {
     const Scene drawn = load(scene);
-    require_no_rods(drawn, scene.name, "places of rest are looked for without constraints");
+    require_no_rods(drawn, scene->name, "places of rest are looked for without constraints");
     const Model model(drawn, Reductions::all_directions());
     std::optional<CsvFile> csv;
     if (path.is_given()) csv.emplace(*path, node_header(drawn.dimension, {}));

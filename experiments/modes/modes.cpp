@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
                    "starts)");
   return p.run(argc, argv, [&] {
     const Scene drawn = load(scene);
-    require_no_rods(drawn, scene.name, "its small vibrations are not those of K alone");
+    require_no_rods(drawn, scene->name, "its small vibrations are not those of K alone");
     const bool at_equilibrium = is_at_equilibrium(at, drawn);
     if (at_equilibrium) progress().stage("finding the equilibrium");
     const Model model(at_equilibrium ? settled(drawn, scene->name) : drawn,

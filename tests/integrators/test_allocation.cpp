@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(no_step_of_any_method_and_no_look_at_it_allocates) {
     BOOST_TEST_CONTEXT(c.name) {
       int runs = 0, failed = 0;
       // Forces keep what they need of memory for the next.
-      for (const char* method : {"explicit_euler", "discrete_gradient"}) {
+      for (const char* method : {"explicit_euler", "discrete_gradient", "rattle"}) {
         cost_of(method_named(method), c, 1, false);
       }
       for (const Method& method : methods()) {

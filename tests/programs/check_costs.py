@@ -175,7 +175,8 @@ class Ratios(Programs):
     def test_the_winner_is_the_fastest_point_and_the_margin_that_of_the_next_method(self):
         out, compared = self.crossed / "out", 0
         written = "crossover.csv crossover.json kinds.csv kinds.json points.csv points.json"
-        self.assertEqual(sorted(os.listdir(out)), [*written.split(), "ratio_1", "ratio_10000"])
+        others = ["ratio_1", "ratio_10000", "rods.csv", "rods.json"]
+        self.assertEqual(sorted(os.listdir(out)), [*written.split(), *others])
         columns = "stiffness_ratio,accuracy,{}method,time_s"
         rows = table(out + "/crossover.csv", columns.format("") + ",runner_up,margin")
         cells = list(itertools.product((1, 1e4), (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)))

@@ -149,7 +149,7 @@ simulate --scene orbit --method ida --rtol 1e-3 --max-order {0,-1,6,100} | --max
 simulate --scene orbit --method ida --rtol 1e-3 --max-order {text,1.5,nan,99999999999999999999} | --max-order | {} | allowed is a number
 simulate --scene orbit --method ida --rtol 1e-3 --max-order | --max-order
 simulate --scene orbit --method ida --rtol 1e-3 --max-order 2 --max-order 0 | --max-order 0 | from 1 to
-simulate --scene orbit --method verlet --step-size 1e-3 --max-order 2 | --max-order is not for verlet; it is for ida, ida_klu, cvode_bdf, cvode_bdf_klu, cvode_adams
+simulate --scene orbit --method verlet --step-size 1e-3 --max-order 2 | --max-order is not for verlet; it is for ida, ida_klu, ida_rods, cvode_bdf, cvode_bdf_klu, cvode_adams
 simulate --scene orbit --method arkode_dirk4 --rtol 1e-3 --max-order 2 | --max-order is not for arkode_dirk4
 simulate --scene orbit --method {arkode_dirk4,cvode_adams,ida} --rtol 1e-3 --stability-detection | --stability-detection is not for {}; it is for cvode_bdf, cvode_bdf_klu
 simulate --scene orbit --method local_global --step-size 1e-3 --iterations {0,1000000000} | --iterations {} | a whole number from 1 to 100000

@@ -153,7 +153,7 @@ inline bool is_known_in_time(const System& system) {
 
 // The reason why the method cannot run on the system, whatever its masses; nothing if it can.
 inline std::optional<Outcome> misfit(const Method& method, const System& system) {
-  if (method.asks(Need::constraints) != is_constrained(system))
+  if (system.size() > 0 && method.asks(Need::constraints) != is_constrained(system))
     return method.asks(Need::constraints) ? Outcome::no_constraints : Outcome::refuses_constraints;
   if (method.asks(Need::stiffness) && !system.has_stiffness()) return Outcome::no_stiffness;
   if (method.asks(Need::constant_stiffness) && !system.stiffness_is_constant())

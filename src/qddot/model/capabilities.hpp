@@ -250,8 +250,8 @@ class Constraints {
   virtual void constraint_accelerations(const At& at, MutableVec accelerations) const = 0;
   // The second derivatives of g that are not zero.
   virtual std::vector<Curvature> curvatures() const = 0;
-  // c [m/N], m, if g = c lambda in place of g = 0: springs of stiffness 1/c along the gradients that
-  // stretch at once, and do not vibrate. Empty if all c are zero. Only RATTLE heeds it.
+  // c [m/N], m, if g = c lambda in place of g = 0: springs of stiffness 1/c along the gradients
+  // that stretch at once, and do not vibrate. Empty if all c are zero. Only RATTLE heeds it.
   virtual const Vec& compliances() const = 0;
 };
 

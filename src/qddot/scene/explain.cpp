@@ -175,9 +175,12 @@ Explanation explain(const Scene& scene, const Model& model, const ExplanationLim
 }
 
 std::string explanation_in_words(const Explanation& e, const Scene& scene) {
+  const auto rods =
+      std::ranges::count_if(scene.springs, [](const Spring& spring) { return spring.law.rigid; });
   std::string words =
-      fmt::format("{}: {} nodes, {} springs; {} unknowns of {} are left\n", scene.name,
-                  scene.nodes.size(), scene.springs.size(), e.unknowns, e.drawn_unknowns);
+      fmt::format("{}: {} nodes, {} springs{}; {} unknowns of {} are left\n", scene.name,
+                  scene.nodes.size(), std::ssize(scene.springs) - rods,
+                  rods > 0 ? fmt::format(", {} rods", rods) : "", e.unknowns, e.drawn_unknowns);
   const auto line = [&](std::string_view about, const std::string& sentence) {
     words += fmt::format("  {:<19} {}\n", about, sentence);
   };
@@ -186,6 +189,15 @@ std::string explanation_in_words(const Explanation& e, const Scene& scene) {
   if (scene.stiff_above) {
     line("stiff", fmt::format("{} of {} springs are stiff (above {:.4g} N/m)", e.stiff_springs,
                               scene.springs.size(), *scene.stiff_above));
+  }
+  if (rods > 0) {
+    line("rods", fmt::format("{} keep their lengths: {}", rods,
+                             e.omega_bound > 0 ? "the next line is of the springs alone, and "
+                                                 "tensions of rods add to it"
+                                               : "no spring vibrates"));
+    if (e.omega_bound > 0) line("step", step_sentence(e));
+    if (e.is_damped) line("damping", damping_sentence(e));
+    return words;
   }
   line("step", step_sentence(e));
   if (e.is_damped) line("damping", damping_sentence(e));

@@ -92,8 +92,8 @@ Outcome RattleSteps::drift(double t, double s, X& next) {
     const Vec& compliances = constraints_->compliances();
     const double to_force = 2 / (s * length);
     if (compliances.size() > 0 && !multipliers_.factorize(to_force)) return no_solution(t);
-    multipliers_.add_pull(-s / 2, lambda_, next.v);
     next.q += length * next.v;
+    multipliers_.add_pull(-1 / to_force, lambda_, next.q);
     const double rounding = multipliers_.rounding(next.q);
     double last = std::numeric_limits<double>::infinity();
     for (int i = 0;; ++i) {
@@ -106,9 +106,9 @@ Outcome RattleSteps::drift(double t, double s, X& next) {
       last = worst;
       multipliers_.solve(g_, solved_);
       multipliers_.add_pull(-1, solved_, next.q);
-      multipliers_.add_pull(-1 / length, solved_, next.v);
       lambda_ += to_force * solved_;
     }
+    multipliers_.add_pull(-s / 2, lambda_, next.v);
     next.change = lambda_ - next.mu;
     next.size = s;
     if (is_driven()) add_work_of_impulse(s / 2, lambda_, next);

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "qddot/algebra/constraint_forces.hpp"
-#include "qddot/analysis/stability.hpp"
+#include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/rods.hpp"
@@ -114,6 +114,12 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
   truth.summary.outcome = Outcome::reached_end;
   truth.path = {answer.end};
   const double first = answer.method == &method ? answer.value : until / rules.places;
+  // The answer's own run knows tensions to its accuracy. Those of coarse runs may be zero where a
+  // wave has hardly come.
+  const Trial accurate = rods_alone.run(*answer.method, answer.value, {});
+  if (!accurate.reached_end()) return {};
+  const double stretch_of_answer = largest_stretch(*rigid, compliant_scene, accurate.path);
+  std::optional<double> last;  // at twice the step
   for (double h = first; h > until / 1e6; h /= 2) {
     const Trial run = rods_alone.run(method, h, {});
     if (!run.reached_end()) continue;
@@ -123,13 +129,23 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
     if (rods_alone.distance(end, truth) > resolved) continue;
     const Trial stretched = with_stretch.run(method, h, {});
     if (!stretched.reached_end()) continue;
-    const double stretch = largest_stretch(*rigid, compliant_scene, run.path);
+    const double stretch =
+        std::max(stretch_of_answer, largest_stretch(*rigid, compliant_scene, run.path));
     double least = rods_alone.scales().displacement;
     for (const PartScale& part : rods_alone.scales().parts) {
       least = std::min(least, rods_alone.scales().displacement_of(part));
     }
     const double vibration = static_cast<double>(longest_row(rigid_scene)) * stretch / least;
-    return rules.doubt * (rods_alone.distance(run, stretched) + vibration);
+    const double change = rods_alone.distance(run, stretched) + vibration;
+    if (last) {
+      // Two steps that agree resolve it. What is small beside the accuracy need not be known
+      // better.
+      const double larger = std::max(change, *last);
+      const bool agree = larger <= rules.doubt * std::min(change, *last);
+      const double bound = rules.doubt * larger;
+      if (agree || bound <= rules.small * part_of_change * wanted.accuracy) return bound;
+    }
+    last = change;
   }
   return {};
 }
