@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from chart_data import of_kind
+from chart_data import of_kind, stiffness_ratio
 from page_data import figures, rows
 
 
@@ -25,12 +25,12 @@ class Change:
 def ratios():
     """The ratios of the study."""
     found = sorted({float(cell["stiffness_ratio"]) for cell in rows("crossover_hem", "kinds.csv")})
-    return [Ratio(value, f"{value:g}") for value in found]
+    return [Ratio(value, stiffness_ratio(value)) for value in found]
 
 
 def changes():
     """What rods change at each ratio."""
     return [
-        Change(f"{float(row['stiffness_ratio']):g}", figures(row["change"], 2))
+        Change(stiffness_ratio(float(row["stiffness_ratio"])), figures(row["change"], 2))
         for row in rows("crossover_hem", "rods.csv")
     ]
