@@ -22,8 +22,9 @@ py::tuple names_in(const SetOf<Kind>& set, const std::array<const char*, count>&
 constexpr std::array trait_names = {"implicit",        "linearly_implicit", "symplectic",
                                     "cancels_torques", "accepts_massless",  "interpolates",
                                     "bounds_steps",    "reversible",        "remembers_steps"};
-constexpr std::array need_names = {"stiffness",         "constant_stiffness", "split_forces",
-                                   "discrete_gradient", "laplacian",          "potential"};
+constexpr std::array need_names = {"constraints",  "stiffness",         "constant_stiffness",
+                                   "split_forces", "discrete_gradient", "laplacian",
+                                   "potential"};
 
 py::tuple names_of_options(const Method& method) {
   py::list taken;

@@ -69,6 +69,7 @@ def require_measurable(of: Scene | System, what: str) -> None:
 def require_offered(of: System, chosen: Method) -> None:
     """Raises ValueError for a method that needs something that the System does not compute."""
     others = {
+        "constraints": "rods",
         "split_forces": "stiff springs",
         "discrete_gradient": "the discrete gradient of springs",
         "laplacian": "the matrix of springs of rest length zero",

@@ -145,7 +145,7 @@ void validate_rods(const Scene& scene, const std::string& source) {
     const double length = spring->law.rest_length, l = d.norm(), rate = d.dot(w) / l;
     if (!(std::abs(l - length) <= rounding * size))
       refuse(source, *spring,
-             fmt::format("is {:.17g} m long, but its ends are {:.17g} m apart at the start; "
+             fmt::format("is {} m long, but its ends are {} m apart at the start; "
                          "allowed is that length, and none given takes it",
                          length, l));
     if (!(std::abs(rate) <= rounding * speed))
