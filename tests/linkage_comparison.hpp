@@ -14,6 +14,7 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/model.hpp"
+#include "tests/method_comparisons.hpp"
 #include "tests/random_linkage.hpp"
 
 namespace qddot {
@@ -176,33 +177,6 @@ struct LinkageRun {
   std::string thrown{};
 };
 
-// The results of comparisons, and the orders that halved steps show.
-struct LinkageComparisons {
-  std::int64_t runs = 0, refused = 0;
-  std::vector<std::string> disagreements{};  // a sentence each
-  std::map<std::string, std::vector<double>> orders{};
-  // Errors of methods that choose their steps, in tolerances times growths.
-  std::map<std::string, std::vector<double>> tolerances{};
-  // The largest errors of rods' lengths and rates.
-  std::map<std::string, std::vector<double>> stretches{};
-
-  LinkageComparisons& operator+=(const LinkageComparisons& more) {
-    runs += more.runs;
-    refused += more.refused;
-    disagreements.insert(disagreements.end(), more.disagreements.begin(), more.disagreements.end());
-    add(more.orders, orders);
-    add(more.tolerances, tolerances);
-    add(more.stretches, stretches);
-    return *this;
-  }
-
- private:
-  using Lists = std::map<std::string, std::vector<double>>;
-  static void add(const Lists& more, Lists& all) {
-    for (const auto& [name, own] : more) all[name].insert(all[name].end(), own.begin(), own.end());
-  }
-};
-
 // Compares methods with a known motion.
 class LinkageComparison {
  public:
@@ -213,7 +187,7 @@ class LinkageComparison {
   // Compares the start of the model, and the number of its rods. A reduction leaves out those that
   // fall without a tension.
   void compare_start(const Model& model, bool is_reduced, const std::string& where);
-  const LinkageComparisons& results() const { return all_; }
+  const MethodComparisons& results() const { return all_; }
 
  private:
   // The largest of all errors of motion, each over its size.
@@ -244,7 +218,7 @@ class LinkageComparison {
   void disagree(std::string sentence) { all_.disagreements.push_back(std::move(sentence)); }
 
   const KnownLinkage& known_;
-  LinkageComparisons all_{};
+  MethodComparisons all_{};
 };
 
 inline void LinkageComparison::compare_start(const Model& model, bool is_reduced,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/independent_linkage.hpp"
+#include "tests/scene_draws.hpp"
 
 namespace qddot {
 inline namespace tests {
@@ -21,9 +22,9 @@ struct LinkageScene {
 };
 
 // Makes scenes of metres, whose velocities satisfy every rod and whose loops are not singular.
-class LinkageScenes {
+class LinkageScenes : SceneDraws {
  public:
-  explicit LinkageScenes(std::uint64_t seed) : random_(seed) {}
+  explicit LinkageScenes(std::uint64_t seed) : SceneDraws(seed) {}
 
   // The kinds of scenes that draw() makes.
   static const std::vector<std::string>& kinds() {
@@ -41,27 +42,6 @@ class LinkageScenes {
   }
 
  private:
-  using Vector = Eigen::Vector3d;
-
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
-  }
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
-  bool is(double probability) { return uniform(0, 1) < probability; }
-  // Each component by a draw of its own, up to the size; zero beyond the dimension.
-  Vector vector(double size) {
-    Vector x = Vector::Zero();
-    for (int d = 0; d < scene_.dimension; ++d) x[d] = uniform(-size, size);
-    return x;
-  }
-  // A random direction.
-  Vector direction() {
-    for (;;) {
-      const Vector x = vector(1);
-      const double square = x.squaredNorm();
-      if (square > 0.01 && square <= 1) return x / std::sqrt(square);
-    }
-  }
   // A mass [kg] of this scene.
   double mass() { return std::pow(10, uniform(least_mass_, most_mass_)); }
 
@@ -111,8 +91,6 @@ class LinkageScenes {
   void measure_rods();
   bool set_velocities();
 
-  std::mt19937_64 random_;
-  Scene scene_{};
   double least_mass_ = 0, most_mass_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include <Eigen/Dense>
 
 #include "qddot/scene/scene.hpp"
+#include "tests/scene_draws.hpp"
 
 namespace qddot {
 inline namespace tests {
@@ -27,9 +28,9 @@ struct StiffScene {
 
 // Makes scenes whose stiff springs start at rest lengths that no velocity changes, so that rods
 // could be in their place.
-class StiffScenes {
+class StiffScenes : SceneDraws {
  public:
-  explicit StiffScenes(std::uint64_t seed) : random_(seed) {}
+  explicit StiffScenes(std::uint64_t seed) : SceneDraws(seed) {}
 
   static const std::vector<std::string>& kinds() {
     static const std::vector<std::string> all = {"cloth", "chain", "tree", "net", "ring", "spin"};
@@ -57,28 +58,6 @@ class StiffScenes {
   }
 
  private:
-  using Vector = Eigen::Vector3d;
-
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
-  }
-  double power(double low, double high) { return std::pow(10, uniform(low, high)); }
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
-  bool is(double probability) { return uniform(0, 1) < probability; }
-  // Each component by a draw of its own, up to the size; zero beyond the dimension.
-  Vector vector(double size) {
-    Vector x = Vector::Zero();
-    for (int d = 0; d < scene_.dimension; ++d) x[d] = uniform(-size, size);
-    return x;
-  }
-  Vector direction() {
-    for (;;) {
-      const Vector x = vector(1);
-      const double square = x.squaredNorm();
-      if (square > 0.01 && square <= 1) return x / std::sqrt(square);
-    }
-  }
-
   std::size_t add(const Vector& position) {
     const double mass = typical_mass_ * (is_uneven_ ? power(-1, 1) : power(-0.15, 0.15));
     scene_.nodes.push_back({.position = position, .mass = mass});
@@ -111,8 +90,6 @@ class StiffScenes {
   void set_velocities(bool spins);
   void damp_some(double ratio);
 
-  std::mt19937_64 random_;
-  Scene scene_{};
   double spacing_ = 1, typical_mass_ = 1;
   double acceleration_ = 9.81;  // a typical one [m/s^2]
   double soft_ = 1;             // a typical stiffness of the others [N/m]

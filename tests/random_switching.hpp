@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/independent_switching.hpp"
+#include "tests/scene_draws.hpp"
 
 namespace qddot {
 inline namespace tests {
@@ -20,9 +21,9 @@ struct SwitchingScene {
 };
 
 // Makes scenes of metres, kilograms and some hundred N/m.
-class SwitchingScenes {
+class SwitchingScenes : SceneDraws {
  public:
-  explicit SwitchingScenes(std::uint64_t seed) : random_(seed) {}
+  explicit SwitchingScenes(std::uint64_t seed) : SceneDraws(seed) {}
 
   // One of seven kinds, with dashpots, air, cubic and quartic terms on some.
   SwitchingScene draw() {
@@ -79,19 +80,7 @@ class SwitchingScenes {
   }
 
  private:
-  using Vector = Eigen::Vector3d;
-
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
-  }
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
-  bool is(double probability) { return uniform(0, 1) < probability; }
   double stiffness() { return std::pow(10, uniform(1.7, 3.2)); }
-  Vector vector(double size) {
-    Vector x = Vector::Zero();
-    for (int d = 0; d < scene_.dimension; ++d) x[d] = uniform(-size, size);
-    return x;
-  }
   int down() const { return scene_.dimension == 1 ? 0 : 1; }
 
   std::size_t add(const Vector& position, bool pinned, double speed) {
@@ -211,8 +200,6 @@ class SwitchingScenes {
     }
   }
 
-  std::mt19937_64 random_;
-  Scene scene_{};
   double cable_share_ = 1;
 };
 

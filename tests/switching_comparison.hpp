@@ -12,6 +12,7 @@
 
 #include "qddot/integrators/registry.hpp"
 #include "qddot/scene/model.hpp"
+#include "tests/method_comparisons.hpp"
 #include "tests/random_switching.hpp"
 
 namespace qddot {
@@ -74,30 +75,6 @@ struct SwitchingRun {
   double released = 0, dissipated = 0;  // [J]
   std::vector<Break> breaks{};          // by the scene's numbers
   std::string thrown{};
-};
-
-// The results of comparisons, and the orders that halved steps show.
-struct SwitchingComparisons {
-  std::int64_t runs = 0, refused = 0;
-  std::vector<std::string> disagreements{};  // a sentence each
-  std::map<std::string, std::vector<double>> orders{};
-  // Errors of methods that choose their steps, in tolerances times growths.
-  std::map<std::string, std::vector<double>> tolerances{};
-
-  SwitchingComparisons& operator+=(const SwitchingComparisons& more) {
-    runs += more.runs;
-    refused += more.refused;
-    disagreements.insert(disagreements.end(), more.disagreements.begin(), more.disagreements.end());
-    add(more.orders, orders);
-    add(more.tolerances, tolerances);
-    return *this;
-  }
-
- private:
-  using Lists = std::map<std::string, std::vector<double>>;
-  static void add(const Lists& more, Lists& all) {
-    for (const auto& [name, own] : more) all[name].insert(all[name].end(), own.begin(), own.end());
-  }
 };
 
 inline KnownSwitching::KnownSwitching(const Scene& scene) : scene_(scene) {
@@ -208,7 +185,7 @@ class SwitchingComparison {
 
   // Runs the method twice, with half the step or a smaller tolerance the second time.
   void compare(const Method& method, const Model& model, const std::string& where);
-  const SwitchingComparisons& results() const { return all_; }
+  const MethodComparisons& results() const { return all_; }
 
  private:
   // The largest of all errors, each over its size.
@@ -244,7 +221,7 @@ class SwitchingComparison {
   void disagree(std::string sentence) { all_.disagreements.push_back(std::move(sentence)); }
 
   const KnownSwitching& known_;
-  SwitchingComparisons all_{};
+  MethodComparisons all_{};
 };
 
 inline void SwitchingComparison::compare(const Method& method, const Model& model,

@@ -18,9 +18,9 @@
 //  3. points.csv has every point. crossover.csv has, for each ratio and accuracy from 1e-1 to 1e-6,
 //     the fastest method and the next. kinds.csv has the fastest of each kind: explicit, implicit,
 //     split (stiff springs apart from the others), rods (in place of the stiff springs, where those
-//     can be rods; errors are against the motion of the springs). rods.csv has what rods change, as
-//     a position error at the end. Fields are empty if no method
-//     reached the accuracy, or if the reference does not certify it.
+//     can be rods; errors are against the motion of the springs). Fields are empty if no method
+//     reached the accuracy, or if the reference does not certify it. rods.csv has what rods change,
+//     as a position error at the end.
 //
 // Expected results: the largest step of an explicit method is c / w_max, and w_max grows as
 // sqrt(ratio). If that limit and not the accuracy decides, the method takes
@@ -67,24 +67,25 @@ void require_ratio(double ratio, const std::string& option) {
 // they are at the largest.
 std::vector<const Method*> competitors(const std::vector<std::string>& list,
                                        const Subject& stiffest) {
-  if (!list.empty()) {
-    std::vector<std::string> others = list;
-    std::erase_if(others, [](const std::string& name) {
-      return method_named(name, "--methods").asks(Need::constraints);
-    });
-    auto selected =
-        others.empty() ? std::vector<const Method*>() : select_methods(others, stiffest);
-    for (const std::string& name : list) {
-      if (method_named(name, "--methods").asks(Need::constraints))
-        selected.push_back(&method_named(name, "--methods"));
+  require_each_once(list, "--methods");
+  std::vector<std::string> on_springs;
+  std::vector<const Method*> with_rods, selected;
+  for (const std::string& name : list) {
+    const Method& method = method_named(name, "--methods");
+    if (method.asks(Need::constraints)) {
+      with_rods.push_back(&method);
+    } else {
+      on_springs.push_back(name);
     }
-    return selected;
   }
-  auto selected = select_methods(list, stiffest);
-  std::erase_if(selected, [](const Method* method) { return !method->stock_of.empty(); });
-  for (const Method& method : methods()) {
-    if (method.asks(Need::constraints)) selected.push_back(&method);
+  if (list.empty() || !on_springs.empty()) selected = select_methods(on_springs, stiffest);
+  if (list.empty()) {
+    std::erase_if(selected, [](const Method* method) { return !method->stock_of.empty(); });
+    for (const Method& method : methods()) {
+      if (method.asks(Need::constraints)) with_rods.push_back(&method);
+    }
   }
+  selected.insert(selected.end(), with_rods.begin(), with_rods.end());
   return selected;
 }
 

@@ -41,8 +41,10 @@ std::shared_ptr<const WithRods> with_rods(const AtRatio& one) {
   reference.end = model.collect(one.subject.model.expand(of_springs.end), of_springs.end.t);
   reference.energy = model.energy(model.initial());
   State end = model.initial();
-  make_integrator(method, model.system(), options_for(method, fine_rtol, model))
-      ->advance(end, one.subject.until);
+  const Summary summary =
+      make_integrator(method, model.system(), options_for(method, fine_rtol, model))
+          ->advance(end, one.subject.until);
+  if (summary.outcome != Outcome::reached_end) return nullptr;  // rods that lock, as no spring does
   const double change =
       errors_between(model, end, reference.end, reference.energy, reference.scales).position;
   return std::make_shared<const WithRods>(WithRods{std::move(model), std::move(reference), change});

@@ -36,26 +36,10 @@ void print_methods(bool as_csv, bool with_newer) {
   std::vector<Method> listed = methods();
   if (with_newer) std::ranges::copy(newer_methods(), std::back_inserter(listed));
   if (as_csv) {
-    Csv csv({"name",
-             "order",
-             "family",
-             "knob",
-             "implicit",
-             "symplectic",
-             "needs_stiffness",
-             "accepts_massless",
-             "needs_constant_stiffness",
-             "needs_split",
-             "needs_laplacian",
-             "takes_iterations",
-             "summary",
-             "source",
-             "stock_of",
-             "needs_sundials",
-             "damping",
-             "why_not_damped",
-             "driving",
-             "needs_rods"});
+    Csv csv(columns_in(
+        "name order family knob implicit symplectic needs_stiffness accepts_massless "
+        "needs_constant_stiffness needs_split needs_laplacian takes_iterations summary source "
+        "stock_of needs_sundials damping why_not_damped driving needs_rods"));
     for (const Method& m : listed) {
       csv.row(m.name, m.order, family_name(m.family), knob_name(m.knob), yes(m.is(Trait::implicit)),
               yes(m.is(Trait::symplectic)),

@@ -23,8 +23,7 @@
 
 #include <fmt/format.h>
 
-#include "integrators/sundials/library.hpp"
-#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/ida_stepper.hpp"
 #include "qddot/algebra/effective_mass.hpp"
 #include "qddot/analysis/curvature_signs.hpp"
 #include "qddot/analysis/equilibrium.hpp"
@@ -45,20 +44,10 @@ constexpr double most_moved_by_errors = 2;
 constexpr double most_times_as_fast = 1e8;
 
 template <MakeMatrix make_matrix>
-class Ida final : public Library {
+class Ida final : public IdaStepper {
  public:
-  explicit Ida(SystemRun& run)
-      : Library(run, make_matrix), rate_(clone(y())), memory_(check(IDACreate(context()))) {
-    auto* self = static_cast<Library*>(this);
-    hear_errors(errors_of_ida, ida());
-    check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
-    check(IDASetUserData(ida(), self), "IDASetUserData");
-    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
-    check(IDASetLinearSolver(ida(), matrix().solver(), matrix().matrix()), "IDASetLinearSolver");
-    check(IDASetJacFn(ida(), jacobian), "IDASetJacFn");
-    if (options().max_order > 0) {
-      check(IDASetMaxOrd(ida(), std::min(options().max_order, method().order)), "IDASetMaxOrd");
-    }
+  explicit Ida(SystemRun& run) : IdaStepper(run, make_matrix) {
+    keep({residual, jacobian, matrix().solver(), matrix().matrix()});
     if (!system().has_massless()) return;
     std::vector<bool> has_mass;
     for (const double mass : system().mass()) has_mass.push_back(mass > 0);
@@ -69,40 +58,27 @@ class Ida final : public Library {
     check(IDAWFtolerances(ida(), weights), "IDAWFtolerances");
   }
 
-  void set_stop_time(double t_stop) override {
-    check(IDASetStopTime(ida(), t_stop), "IDASetStopTime");
-  }
-
-  void note_step() override {
-    int order = 0;
-    check(IDAGetLastOrder(ida(), &order), "IDAGetLastOrder");
-    orders_.note(order, counts());
-  }
-
  private:
-  void* ida() const { return memory_.get(); }
-
   void start(const State& state) override {
     load(state);
-    orders_ = {};
-    earlier_ = {};
+    forget();
     is_lost_ = is_rough_ = false;
     is_consistent_ = !system().has_massless();
     set_rate_of_masses(state.t);
-    has_finite_rate_ = Halves(rate_.get()).v.allFinite();
-    check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
+    has_finite_rate_ = Halves(rate()).v.allFinite();
+    start_ida(state.t);
   }
 
   // Sets y' = (v, M^-1 f) of unknowns with mass.
   void set_rate_of_masses(double t) {
     const Halves at(y());
-    Halves rate(rate_.get());
-    rate.q = at.v;
-    rate.v = force_at(system(), t, at);
+    Halves change(rate());
+    change.q = at.v;
+    change.v = force_at(system(), t, at);
     for (Index i = 0; i < system().size(); ++i) {
-      rate.v[i] = system().mass()[i] > 0 ? rate.v[i] / system().mass()[i] : 0;
+      change.v[i] = system().mass()[i] > 0 ? change.v[i] / system().mass()[i] : 0;
     }
-    if (has_work(y())) work(rate_.get()) = power().taken();
+    if (has_work(y())) work(rate()) = power().taken();
   }
 
   int take_step(double t_stop, double& t) override {
@@ -116,7 +92,7 @@ class Ida final : public Library {
       set_massless(at.q, Vec::Constant(system().size(), most_rounded()));
       tolerate_rounding(t);
     }
-    int flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+    int flag = IDASolve(ida(), t_stop, &t, y(), rate(), IDA_ONE_STEP);
     const auto has_failed = [&] { return flag == IDA_CONV_FAIL || flag == IDA_ERR_FAIL; };
     if (massless_ && has_failed()) {
       // If springs hardly hold a massless node, Newton's iteration may fail from positions that are
@@ -126,13 +102,13 @@ class Ida final : public Library {
       // would jump to another balance.
       is_lost_ = make_consistent(t, farthest_by_errors()) < 0;
       if (is_lost_) return flag;
-      flag = IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+      flag = IDASolve(ida(), t_stop, &t, y(), rate(), IDA_ONE_STEP);
       is_lost_ = has_failed();
     }
     if (flag < 0 || !massless_) return flag;
     if (frozen_) frozen_->set_time(t);
     if (is_rough_) tolerate_rounding(t);
-    set_massless(Halves(y()).v, Halves(rate_.get()).q);
+    set_massless(Halves(y()).v, Halves(rate()).q);
     is_lost_ = !(massless_speed() < most_times_as_fast * (moving_speed() + options().speed));
     if (is_lost_) return IDA_CONV_FAIL;
     // After a short last step, q' would be the difference of two positions, each only right to the
@@ -154,8 +130,7 @@ class Ida final : public Library {
     set_massless_velocities(t_start);
     set_rate_of_masses(t_start);
     set_massless(at.v, Vec::Zero(system().size()));
-    earlier_ = own_counts();
-    check(IDAReInit(ida(), t_start, y(), rate_.get()), "IDAReInit");
+    restart_ida(t_start);
     return 0;
   }
 
@@ -287,43 +262,15 @@ class Ida final : public Library {
     });
   }
 
-  OwnCounts own_counts() const override {
-    OwnCounts own;
-    check(IDAGetNumSteps(ida(), &own.steps), "IDAGetNumSteps");
-    check(IDAGetNumErrTestFails(ida(), &own.failed_tests), "IDAGetNumErrTestFails");
-    check(IDAGetNumStepSolveFails(ida(), &own.failed_solves), "IDAGetNumStepSolveFails");
-    check(IDAGetNumLinSolvSetups(ida(), &own.setups), "IDAGetNumLinSolvSetups");
-    check(IDAGetNumNonlinSolvIters(ida(), &own.iterations), "IDAGetNumNonlinSolvIters");
-    own.steps += earlier_.steps;
-    own.failed_tests += earlier_.failed_tests;
-    own.failed_solves += earlier_.failed_solves;
-    own.setups += earlier_.setups;
-    own.iterations += earlier_.iterations;
-    return own;
-  }
-
   Cause cause_of(int flag) const override {
     if (!is_consistent_) return Cause::consistent_start;
     if (is_lost_) return Cause::loose_massless;
     const bool is_about_a_step = flag == IDA_ERR_FAIL || flag == IDA_CONV_FAIL ||
                                  flag == IDA_NLS_FAIL || flag == IDA_LSETUP_FAIL;
     if (is_about_a_step && massless_ && is_loose()) return Cause::loose_massless;
-    static constexpr std::pair<int, Cause> causes[] = {
-        {IDA_ERR_FAIL, Cause::error_test},    {IDA_TOO_MUCH_ACC, Cause::accuracy},
-        {IDA_CONV_FAIL, Cause::convergence},  {IDA_NLS_FAIL, Cause::convergence},
-        {IDA_LSETUP_FAIL, Cause::setup},      {IDA_FIRST_RES_FAIL, Cause::first_force},
-        {IDA_RES_FAIL, Cause::force},         {IDA_REP_RES_ERR, Cause::force},
-        {IDA_TOO_CLOSE, Cause::end_too_close}};  // the only cause of this flag that runs meet
-    return cause_in(causes, flag);
+    return IdaStepper::cause_of(flag);
   }
 
-  std::string flag_name(int flag) const override {
-    const std::unique_ptr<char, decltype(&std::free)> text(IDAGetReturnFlagName(flag), std::free);
-    return fmt::format("IDA {}", text ? text.get() : "");
-  }
-
-  Orders orders_;
-  Vector rate_;                      // y'
   std::optional<Vector> tolerated_;  // absolute tolerance, with that of massless nodes
   Vec f_rate_{system().size()};
   // A system that depends on time, at the time reached; only with massless nodes.
@@ -333,8 +280,6 @@ class Ida final : public Library {
   bool is_consistent_ = true, has_finite_rate_ = true;
   bool is_lost_ = false;   // whether no balance is left near the massless nodes
   bool is_rough_ = false;  // whether rounding moves a massless node by more than the tolerance
-  OwnCounts earlier_;      // before the last start of IDA, which clears its counts
-  std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 
 template <MakeMatrix make_matrix>

@@ -19,8 +19,7 @@
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
-#include "integrators/sundials/library.hpp"
-#include "integrators/sundials/orders.hpp"
+#include "integrators/sundials/ida_stepper.hpp"
 #include "qddot/algebra/multipliers.hpp"
 #include "qddot/integrators/registry.hpp"
 
@@ -32,50 +31,29 @@ using namespace sundials;
 // The tolerance of what decides no step; its inverse is no subnormal number.
 constexpr double unlimited = 1e200;
 
-class IdaRods final : public Library {
+class IdaRods final : public IdaStepper {
   using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, sunindextype>;
 
  public:
   explicit IdaRods(SystemRun& run)
-      : Library(run, length_of(run.system())),
+      : IdaStepper(run, length_of(run.system())),
         n_(system().size()),
         constraints_(system().constraints()),
         multipliers_(system()),
         curvatures_(constraints_ ? constraints_->curvatures() : std::vector<Curvature>()),
         gradients_(multipliers_.gradients()),
         g_(multipliers_.count()),
-        k_(system().stiffness_pattern()),
-        rate_(clone(y())),
-        memory_(check(IDACreate(context()))) {
+        k_(system().stiffness_pattern()) {
     if (system().damping()) c_ = k_;
-    auto* self = static_cast<Library*>(this);
-    hear_errors(errors_of_ida, ida());
-    check(IDAInit(ida(), residual, 0, y(), rate_.get()), "IDAInit");
-    check(IDASetUserData(ida(), self), "IDASetUserData");
     Halves absolute(atol());
     absolute.q.tail(g_.size()).setConstant(unlimited);
     absolute.v.tail(g_.size()).setConstant(unlimited);
-    check(IDASVtolerances(ida(), rtol(), atol()), "IDASVtolerances");
     find_places();
     matrix_.reset(check(SUNSparseMatrix(jacobian_.rows(), jacobian_.cols(), jacobian_.nonZeros(),
                                         CSC_MAT, context())));
     write_jacobian(matrix_.get());
     klu_.reset(check(SUNLinSol_KLU(y(), matrix_.get(), context())));
-    check(IDASetLinearSolver(ida(), klu_.get(), matrix_.get()), "IDASetLinearSolver");
-    check(IDASetJacFn(ida(), set_jacobian), "IDASetJacFn");
-    if (options().max_order > 0) {
-      check(IDASetMaxOrd(ida(), std::min(options().max_order, method().order)), "IDASetMaxOrd");
-    }
-  }
-
-  void set_stop_time(double t_stop) override {
-    check(IDASetStopTime(ida(), t_stop), "IDASetStopTime");
-  }
-
-  void note_step() override {
-    int order = 0;
-    check(IDAGetLastOrder(ida(), &order), "IDAGetLastOrder");
-    orders_.note(order, counts());
+    keep({residual, set_jacobian, klu_.get(), matrix_.get()});
   }
 
  private:
@@ -85,33 +63,32 @@ class IdaRods final : public Library {
     const Constraints* constraints = system.constraints();
     return stacked_size(system) + 2 * (constraints ? constraints->constraint_count() : 0);
   }
-  void* ida() const { return memory_.get(); }
   At place(double t, const Halves& y) {
     return run_.counted().placed({t, VecView(y.q.data(), n_), VecView(y.v.data(), n_)});
   }
 
   void start(const State& state) override {
     load(state);
-    orders_ = {};
-    Halves at(y()), rate(rate_.get());
+    forget();
+    Halves at(y()), change(rate());
     at.q.tail(g_.size()).setZero();
-    rate.q.setZero();
-    rate.v.setZero();
+    change.q.setZero();
+    change.v.setZero();
     f_.resize(n_);
     force(state, f_);
     multipliers_.take_gradients(place(state.t, at));
     is_regular_ = multipliers_.factorize();
     if (is_regular_) at.v.tail(g_.size()) = multipliers_.forces_at(place(state.t, at), f_);
-    rate.q.head(n_) = state.v;
+    change.q.head(n_) = state.v;
     if (constraints_) f_.noalias() -= multipliers_.gradients().transpose() * at.v.tail(g_.size());
-    rate.v.head(n_) = f_.cwiseQuotient(system().mass());
-    if (has_work(y())) sundials::work(rate_.get()) = taken(state.t, at);
-    check(IDAReInit(ida(), state.t, y(), rate_.get()), "IDAReInit");
+    change.v.head(n_) = f_.cwiseQuotient(system().mass());
+    if (has_work(y())) sundials::work(rate()) = taken(state.t, at);
+    start_ida(state.t);
   }
 
   int take_step(double t_stop, double& t) override {
     if (!is_regular_) return IDA_LSETUP_FAIL;
-    return IDASolve(ida(), t_stop, &t, y(), rate_.get(), IDA_ONE_STEP);
+    return IDASolve(ida(), t_stop, &t, y(), rate(), IDA_ONE_STEP);
   }
 
   // The power of friction less that of driving, at the place of the last force.
@@ -246,31 +223,6 @@ class IdaRods final : public Library {
     }
   }
 
-  OwnCounts own_counts() const override {
-    OwnCounts own;
-    check(IDAGetNumSteps(ida(), &own.steps), "IDAGetNumSteps");
-    check(IDAGetNumErrTestFails(ida(), &own.failed_tests), "IDAGetNumErrTestFails");
-    check(IDAGetNumStepSolveFails(ida(), &own.failed_solves), "IDAGetNumStepSolveFails");
-    check(IDAGetNumLinSolvSetups(ida(), &own.setups), "IDAGetNumLinSolvSetups");
-    check(IDAGetNumNonlinSolvIters(ida(), &own.iterations), "IDAGetNumNonlinSolvIters");
-    return own;
-  }
-
-  Cause cause_of(int flag) const override {
-    static constexpr std::pair<int, Cause> causes[] = {
-        {IDA_ERR_FAIL, Cause::error_test},        {IDA_TOO_MUCH_ACC, Cause::accuracy},
-        {IDA_CONV_FAIL, Cause::convergence},      {IDA_NLS_FAIL, Cause::convergence},
-        {IDA_LSETUP_FAIL, Cause::setup},          {IDA_LSOLVE_FAIL, Cause::setup},
-        {IDA_FIRST_RES_FAIL, Cause::first_force}, {IDA_RES_FAIL, Cause::force},
-        {IDA_REP_RES_ERR, Cause::force},          {IDA_TOO_CLOSE, Cause::end_too_close}};
-    return cause_in(causes, flag);
-  }
-
-  std::string flag_name(int flag) const override {
-    const std::unique_ptr<char, decltype(&std::free)> text(IDAGetReturnFlagName(flag), std::free);
-    return fmt::format("IDA {}", text ? text.get() : "");
-  }
-
   Index n_;
   const Constraints* constraints_;  // nullptr in a part without
   Multipliers multipliers_;
@@ -280,12 +232,9 @@ class IdaRods final : public Library {
   SymmetricMatrix k_, c_;
   std::vector<int> places_;  // in the Jacobian, of its summands
   Columns jacobian_;
-  Orders orders_;
   bool is_regular_ = true;
-  Vector rate_;  // y'
   Matrix matrix_;
   LinearSolver klu_;
-  std::unique_ptr<void, FreeMemoryBy<IDAFree>> memory_;
 };
 
 }  // namespace

@@ -169,11 +169,13 @@ py::dict answer(HeldModel held, const std::vector<std::string>& kept, double unt
                 const std::string& of, std::optional<double> most_seconds, int threads) {
   Wanted wanted{.accuracy = accuracy, .of = accuracy_of(of)};
   if (most_seconds) wanted.seconds = *most_seconds;
+  const auto begin = clock_now();
   const Reductions reductions = reductions_without(kept);
   std::optional<RodsAnswer> with_rods;
   Answer found;
   outside(threads, [&](const std::stop_token&) {
     if (held.start) with_rods = solve_with_rods(*held.start, reductions, until, wanted);
+    if (most_seconds) wanted.seconds = std::max(0.0, *most_seconds - seconds_since(begin));
     found = with_rods ? with_rods->answer : solve(*held.model, until, wanted, held.start.get());
   });
   if (with_rods)

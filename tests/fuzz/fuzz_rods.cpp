@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "qddot/scene/scene_file.hpp"
+#include "tests/fuzz/printed_comparisons.hpp"
 #include "tests/linkage_comparison.hpp"
 
 namespace qddot {
@@ -41,7 +42,7 @@ void list(const KnownLinkage& known, std::uint64_t seed, const std::string& kind
 }
 
 // Compares all methods on the scene with and without reductions.
-LinkageComparisons compare_all(const KnownLinkage& known, const Choice& choice) {
+MethodComparisons compare_all(const KnownLinkage& known, const Choice& choice) {
   LinkageComparison comparison(known);
   validate(known.scene(), "the scene");
   const Model reduced(known.scene()), whole(known.scene(), Reductions::only({}));
@@ -56,41 +57,13 @@ LinkageComparisons compare_all(const KnownLinkage& known, const Choice& choice) 
 }
 
 // The same; a scene that is refused is a disagreement.
-LinkageComparisons compare_safely(const KnownLinkage& known, const Choice& choice) {
+MethodComparisons compare_safely(const KnownLinkage& known, const Choice& choice) {
   try {
     return compare_all(known, choice);
   } catch (const std::exception& error) {
-    LinkageComparisons none;
+    MethodComparisons none;
     none.disagreements.push_back(fmt::format("throws: {}", error.what()));
     return none;
-  }
-}
-
-// Methods whose halved steps show another order than their own, in the middle of all scenes.
-std::int64_t print_orders(const LinkageComparisons& all) {
-  std::int64_t wrong = 0;
-  for (auto [name, orders] : all.orders) {
-    std::ranges::sort(orders);
-    const double middle = orders[orders.size() / 2], low = orders[orders.size() / 10];
-    const int order = find_method(name)->order;
-    // Few scenes have no middle; errors of high orders are soon near rounding.
-    const bool is_wrong = orders.size() > 20 && middle < order - (order > 4 ? 1.5 : 0.5);
-    wrong += is_wrong;
-    fmt::print(
-        "{:<20} order {:>2}: {:>5.2f} in the middle, {:>5.2f} of the lowest tenth, {} runs{}\n",
-        name, order, middle, low, orders.size(), is_wrong ? "  WRONG" : "");
-  }
-  return wrong;
-}
-
-// The middle, the highest tenth and the largest of numbers by method.
-void print_sizes(const std::map<std::string, std::vector<double>>& all, const char* sentence) {
-  for (auto [name, sizes] : all) {
-    std::ranges::sort(sizes);
-    fmt::print(
-        "{:<20} {} {:.2g} in the middle, {:.2g} of the highest tenth, {:.2g} at most, {} runs\n",
-        name, sentence, sizes[sizes.size() / 2], sizes[sizes.size() - 1 - sizes.size() / 10],
-        sizes.back(), sizes.size());
   }
 }
 
@@ -106,7 +79,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
   const auto start = std::chrono::steady_clock::now();
   std::map<std::string, Tally> kinds;
   std::map<std::string, std::int64_t> reasons;
-  LinkageComparisons all;
+  MethodComparisons all;
   std::int64_t scenes = 0, skipped = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
@@ -129,7 +102,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
       continue;
     }
     tally.freedoms += known.freedoms();
-    const LinkageComparisons own = compare_safely(known, choice);
+    const MethodComparisons own = compare_safely(known, choice);
     tally.disagreeing += !own.disagreements.empty();
     for (const std::string& sentence : own.disagreements)
       fmt::print("seed {} ({}): {}\n", seed + i, kind, sentence);

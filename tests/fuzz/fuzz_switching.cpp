@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "qddot/scene/scene_file.hpp"
+#include "tests/fuzz/printed_comparisons.hpp"
 #include "tests/switching_comparison.hpp"
 
 namespace qddot {
@@ -54,7 +55,7 @@ void list_changes(const KnownSwitching& known) {
   }
 }
 
-SwitchingComparisons compare_all(const KnownSwitching& known, const Choice& choice) {
+MethodComparisons compare_all(const KnownSwitching& known, const Choice& choice) {
   SwitchingComparison comparison(known);
   const Model reduced(known.scene()), whole(known.scene(), Reductions::only({}));
   for (const std::string& name : choice.methods()) {
@@ -67,40 +68,11 @@ SwitchingComparisons compare_all(const KnownSwitching& known, const Choice& choi
   return comparison.results();
 }
 
-// Methods whose halved steps show another order than their own, in the middle of all scenes.
-std::int64_t print_orders(const SwitchingComparisons& all) {
-  std::int64_t wrong = 0;
-  for (auto [name, orders] : all.orders) {
-    std::ranges::sort(orders);
-    const double middle = orders[orders.size() / 2], low = orders[orders.size() / 10];
-    const int order = find_method(name)->order;
-    // Few scenes have no middle; errors of high orders are soon near rounding.
-    const bool is_wrong = orders.size() > 20 && middle < order - (order > 4 ? 1.5 : 0.5);
-    wrong += is_wrong;
-    fmt::print(
-        "{:<20} order {:>2}: {:>5.2f} in the middle, {:>5.2f} of the lowest tenth, {} runs{}\n",
-        name, order, middle, low, orders.size(), is_wrong ? "  WRONG" : "");
-  }
-  return wrong;
-}
-
-// The errors of methods that choose their steps.
-void print_tolerances(const SwitchingComparisons& all) {
-  for (auto [name, errors] : all.tolerances) {
-    std::ranges::sort(errors);
-    fmt::print(
-        "{:<20} errs by {:.2g} tolerances in the middle, {:.2g} of the highest tenth, {:.2g} "
-        "at most, {} runs\n",
-        name, errors[errors.size() / 2], errors[errors.size() - 1 - errors.size() / 10],
-        errors.back(), errors.size());
-  }
-}
-
 int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& choice) {
   const auto start = std::chrono::steady_clock::now();
   std::map<std::string, Tally> kinds;
   std::map<std::string, std::int64_t> reasons;
-  SwitchingComparisons all;
+  MethodComparisons all;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     if (seconds > 0 && spent.count() > seconds) break;
@@ -121,7 +93,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
     }
     tally.changes += std::ssize(known.changes());
     tally.breaks += std::ssize(known.breaks());
-    const SwitchingComparisons own = compare_all(known, choice);
+    const MethodComparisons own = compare_all(known, choice);
     tally.disagreeing += !own.disagreements.empty();
     for (const std::string& sentence : own.disagreements)
       fmt::print("seed {} ({}): {}\n", seed + i, kind, sentence);
@@ -140,7 +112,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
   }
   for (const auto& [reason, number] : reasons) fmt::print("skipped as {}: {}\n", reason, number);
   const std::int64_t wrong = print_orders(all);
-  print_tolerances(all);
+  print_sizes(all.tolerances, "errs in tolerances by");
   fmt::print("{} scenes, {} runs, {} skipped, {} refused; {} disagreements\n", sum.scenes, all.runs,
              sum.skipped, all.refused, std::ssize(all.disagreements) + wrong);
   return all.disagreements.empty() && wrong == 0 ? 0 : 1;

@@ -86,8 +86,10 @@ class Model {
   // their phases; see Switching.
   const std::vector<std::size_t>& general_springs() const;
 
-  // The scene's numbers of the rods, and the tension of each [N] in `state`: the multipliers that
-  // keep their lengths with the forces and velocities there. NaN where the rods are singular.
+  // The scene's numbers of the rods in parts that are integrated, and the tension of each [N] in
+  // `state`: the multipliers that keep their lengths with the forces and velocities there. NaN
+  // where the rods are singular. Rods in parts that rest in their fall have no tension, and no
+  // entry.
   const std::vector<std::size_t>& rods() const;
   Vec tensions(const State& state) const;
 

@@ -101,6 +101,9 @@ std::vector<double> stiffness_gaps(const Scene& scene, double ratio) {
   for (const Spring& spring : scene.springs) {
     if (spring.law.stiffness > 0) all.push_back(spring.law.stiffness);
   }
+  // Most scenes have none, and need no sorting.
+  if (all.empty()) return {};
+  if (const auto [least, most] = std::ranges::minmax(all); most < ratio * least) return {};
   std::ranges::sort(all, std::ranges::greater());
   std::vector<double> gaps;
   for (std::size_t i = 1; i < all.size(); ++i) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -11,6 +10,8 @@
 #include "qddot/algebra/constraint_forces.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/motion/interruption.hpp"
+#include "qddot/measure/motion/timing.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/rods.hpp"
 
@@ -53,34 +54,29 @@ std::size_t longest_row(const Scene& scene) {
     next[spring.nodes[0]].push_back(spring.nodes[1]);
     next[spring.nodes[1]].push_back(spring.nodes[0]);
   }
-  std::vector<std::size_t> steps(scene.nodes.size());
-  std::vector<bool> is_seen(scene.nodes.size(), false);
-  const auto farthest = [&](std::size_t from) {
-    std::fill(steps.begin(), steps.end(), scene.nodes.size());
-    steps[from] = 0;
-    std::queue<std::size_t> open({from});
-    std::size_t last = from;
-    while (!open.empty()) {
-      last = open.front();
-      open.pop();
-      is_seen[last] = true;
-      for (const std::size_t node : next[last]) {
-        if (steps[node] < scene.nodes.size()) continue;
-        steps[node] = steps[last] + 1;
-        open.push(node);
+  constexpr int unseen = -1, done = -2;
+  std::vector<int> rods(scene.nodes.size(), unseen);  // on the way to each node
+  // The nodes that rods join with one, the farthest last.
+  const auto joined = [&](std::size_t from, int before) {
+    std::vector<std::size_t> all = {from};
+    rods[from] = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (const std::size_t node : next[all[i]]) {
+        if (rods[node] != before) continue;
+        rods[node] = rods[all[i]] + 1;
+        all.push_back(node);
       }
     }
-    return last;
+    return all;
   };
-  std::size_t longest = 0;
+  int longest = 0;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    if (is_seen[i] || next[i].empty()) continue;
-    farthest(farthest(i));
-    for (const std::size_t count : steps) {
-      if (count < scene.nodes.size()) longest = std::max(longest, count);
-    }
+    if (rods[i] != unseen || next[i].empty()) continue;
+    const std::vector<std::size_t> all = joined(i, unseen);
+    for (const std::size_t node : all) rods[node] = done;
+    longest = std::max(longest, rods[joined(all.back(), done).back()]);
   }
-  return longest;
+  return static_cast<std::size_t>(longest);
 }
 
 // The largest stretch tau/k [m] of a spring that a rod stands for, on the way of a run.
@@ -100,12 +96,18 @@ double largest_stretch(const Model& model, const Scene& compliant, const std::ve
   return largest;
 }
 
-// A bound of the change that rods make, relative to the motion; nothing if it is not known.
+// A bound of the change that rods make, relative to the motion; nothing if it is not known, or if
+// that takes more than `seconds`. Throws Interrupted.
 std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& compliant_scene,
                                      const std::shared_ptr<const Model>& rigid,
                                      const Reductions& reductions, double until,
-                                     const Wanted& wanted, const Answer& answer) {
+                                     const Wanted& wanted, const Answer& answer, double seconds) {
   constexpr Rules rules;
+  const auto begin = clock_now();
+  const auto limits = [&] {
+    return Limits{.seconds = std::max(0.0, seconds - seconds_since(begin))};
+  };
+  const auto row = static_cast<double>(longest_row(rigid_scene));
   const Model compliant(compliant_scene, reductions);
   const Method& method = *find_method("rattle");
   Stage rods_alone(*rigid, until, wanted.of, &rigid_scene, rules),
@@ -116,18 +118,19 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
   const double first = answer.method == &method ? answer.value : until / rules.places;
   // The answer's own run knows tensions to its accuracy. Those of coarse runs may be zero where a
   // wave has hardly come.
-  const Trial accurate = rods_alone.run(*answer.method, answer.value, {});
+  const Trial accurate = rods_alone.run(*answer.method, answer.value, limits());
   if (!accurate.reached_end()) return {};
   const double stretch_of_answer = largest_stretch(*rigid, compliant_scene, accurate.path);
   std::optional<double> last;  // at twice the step
   for (double h = first; h > until / 1e6; h /= 2) {
-    const Trial run = rods_alone.run(method, h, {});
+    const Trial run = rods_alone.run(method, h, limits());
+    if (run.summary.outcome == Outcome::over_budget) return {};
     if (!run.reached_end()) continue;
     rods_alone.measure_by(run);
     Trial end = run;
     end.path = {run.path.back()};
     if (rods_alone.distance(end, truth) > resolved) continue;
-    const Trial stretched = with_stretch.run(method, h, {});
+    const Trial stretched = with_stretch.run(method, h, limits());
     if (!stretched.reached_end()) continue;
     const double stretch =
         std::max(stretch_of_answer, largest_stretch(*rigid, compliant_scene, run.path));
@@ -135,8 +138,7 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
     for (const PartScale& part : rods_alone.scales().parts) {
       least = std::min(least, rods_alone.scales().displacement_of(part));
     }
-    const double vibration = static_cast<double>(longest_row(rigid_scene)) * stretch / least;
-    const double change = rods_alone.distance(run, stretched) + vibration;
+    const double change = rods_alone.distance(run, stretched) + row * stretch / least;
     if (last) {
       // Two steps that agree resolve it. What is small beside the accuracy need not be known
       // better.
@@ -164,6 +166,8 @@ std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& 
   if (!reductions.has(Reduction::rods) || wanted.of == AccuracyOf::energy ||
       start.starts_at_equilibrium || has_rods(start) || changes_phases(start))
     return {};
+  const auto begin = clock_now();
+  double fastest_of_springs = 0;  // [rad/s], known with the first gap
   for (const double stiffness : stiffness_gaps(start, least_ratio)) {
     const Scene scene = with_rods(start, stiffness, false);
     try {
@@ -173,18 +177,28 @@ std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& 
     }
     const auto model = std::make_shared<const Model>(scene, reductions);
     if (!is_constrained(model->system())) continue;
-    const Model springs(start, reductions);
-    if (frequency_bound(springs.system(), springs.initial().q) <
-        least_gain * frequency_bound(model->system(), model->initial().q))
+    if (fastest_of_springs == 0) {
+      const Model springs(start, reductions);
+      fastest_of_springs = frequency_bound(springs.system(), springs.initial().q);
+    }
+    if (fastest_of_springs < least_gain * frequency_bound(model->system(), model->initial().q))
       continue;
     Wanted of_run = wanted;
     of_run.accuracy = std::max(least_accuracy, part_of_run * wanted.accuracy);
+    of_run.seconds = wanted.seconds - seconds_since(begin);
     Answer answer = solve(*model, until, of_run, &scene);
     if (!answer.is_reached) return {};
-    const auto change = change_by_rods(scene, with_rods(start, stiffness, true), model, reductions,
-                                       until, wanted, answer);
+    const auto begin_of_check = clock_now();
+    std::optional<double> change;
+    try {
+      change = change_by_rods(scene, with_rods(start, stiffness, true), model, reductions, until,
+                              wanted, answer, wanted.seconds - seconds_since(begin));
+    } catch (const Interrupted&) {
+      return {};
+    }
     if (!change || *change > part_of_change * wanted.accuracy) continue;
     answer.error_estimate += *change;
+    answer.seconds.pilots += seconds_since(begin_of_check);
     const auto is_rod = [](const Spring& spring) { return spring.law.rigid; };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(scene.springs, is_rod));
     return RodsAnswer{scene, model, std::move(answer), count, *change};

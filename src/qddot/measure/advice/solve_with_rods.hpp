@@ -31,7 +31,8 @@ struct RodsAnswer {
 // is of order 1/k and grows with the motion. And they vibrate about that length, by tau/k at most
 // at each: that adds up along a row of rods. See docs, the page on rods.
 //
-// `start`: the scene as its motion starts. Positions and paths only.
+// `start`: the scene as its motion starts. Positions and paths only. Takes no longer than
+// Wanted::seconds, but for the step at hand; an interruption gives nothing.
 std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& reductions,
                                           double until, const Wanted& wanted);
 
