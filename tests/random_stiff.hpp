@@ -320,11 +320,13 @@ inline void StiffScenes::set_velocities(bool spins) {
     g.row(row).segment<3>(static_cast<Eigen::Index>(3 * i)) -= d.transpose();
     g.row(row).segment<3>(static_cast<Eigen::Index>(3 * j)) += d.transpose();
   }
-  const Eigen::MatrixXd a = g * per_mass.asDiagonal() * g.transpose();
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(a);
-  for (int times = 0; times < 3 && !rods.empty(); ++times) {
-    const Eigen::VectorXd pull = factors.solve(g * v);
-    v -= per_mass.asDiagonal() * (g.transpose() * pull);
+  if (!rods.empty()) {  // pins may hold all stiff springs
+    const Eigen::MatrixXd a = g * per_mass.asDiagonal() * g.transpose();
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(a);
+    for (int times = 0; times < 3; ++times) {
+      const Eigen::VectorXd pull = factors.solve(g * v);
+      v -= per_mass.asDiagonal() * (g.transpose() * pull);
+    }
   }
   for (std::size_t i = 0; i < scene_.nodes.size(); ++i)
     scene_.nodes[i].velocity = v.segment<3>(static_cast<Eigen::Index>(3 * i));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,8 +20,9 @@ namespace qddot::inline measure {
 namespace {
 
 // A step of RATTLE takes as long as about four forces, and runs are made to bound what rods change.
-// Only steps that are so many times longer are worth it.
-constexpr double least_gain = 10;
+// Only steps that are so many times longer are worth it, and no check by as much work as Verlet's
+// method takes with the springs.
+constexpr double least_gain = 10, forces_of_step = 4;
 // Springs are stiff beside others if they are so many times stiffer.
 constexpr double least_ratio = 30;
 // The parts of the accuracy for the run with rods, and for what they change.
@@ -96,12 +98,13 @@ double largest_stretch(const Model& model, const Scene& compliant, const std::ve
   return largest;
 }
 
-// A bound of the change that rods make, relative to the motion; nothing if it is not known, or if
-// that takes more than `seconds`. Throws Interrupted.
+// A bound of the change that rods make, relative to the motion; nothing if it is not known by steps
+// down to `least_step` [s], or if that takes more than `seconds`. Throws Interrupted.
 std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& compliant_scene,
                                      const std::shared_ptr<const Model>& rigid,
                                      const Reductions& reductions, double until,
-                                     const Wanted& wanted, const Answer& answer, double seconds) {
+                                     const Wanted& wanted, const Answer& answer, double least_step,
+                                     double seconds) {
   constexpr Rules rules;
   const auto begin = clock_now();
   const auto limits = [&] {
@@ -121,15 +124,24 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
   const Trial accurate = rods_alone.run(*answer.method, answer.value, limits());
   if (!accurate.reached_end()) return {};
   const double stretch_of_answer = largest_stretch(*rigid, compliant_scene, accurate.path);
-  std::optional<double> last;  // at twice the step
-  for (double h = first; h > until / 1e6; h /= 2) {
+  // The change and the error of the run at twice the step.
+  std::optional<double> last;
+  double last_error = std::numeric_limits<double>::infinity();
+  for (double h = first; h >= least_step; h /= 2) {
     const Trial run = rods_alone.run(method, h, limits());
     if (run.summary.outcome == Outcome::over_budget) return {};
     if (!run.reached_end()) continue;
     rods_alone.measure_by(run);
     Trial end = run;
     end.path = {run.path.back()};
-    if (rods_alone.distance(end, truth) > resolved) continue;
+    const double error = rods_alone.distance(end, truth);
+    // Errors that do not fall resolve no motion, unless it is the answer's own error that is seen.
+    const bool falls = error <= last_error / 2 || error <= rules.doubt * answer.error_estimate;
+    last_error = error;
+    if (error > resolved || !falls) {
+      last.reset();
+      continue;
+    }
     const Trial stretched = with_stretch.run(method, h, limits());
     if (!stretched.reached_end()) continue;
     const double stretch =
@@ -192,7 +204,8 @@ std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& 
     std::optional<double> change;
     try {
       change = change_by_rods(scene, with_rods(start, stiffness, true), model, reductions, until,
-                              wanted, answer, wanted.seconds - seconds_since(begin));
+                              wanted, answer, forces_of_step * 2 / fastest_of_springs,
+                              wanted.seconds - seconds_since(begin));
     } catch (const Interrupted&) {
       return {};
     }
