@@ -3,12 +3,12 @@
 //   fuzz_rods --count 1000 --seed 1
 //   fuzz_rods --kind ring --seconds 3600
 //
-// Each scene is random (tests/random_linkage.hpp). The independent model is in
-// tests/independent_linkage.hpp: directions of rods are coordinates, in long double, without
-// multipliers. A scene is skipped if its loops come near a singular position, or if a disturbance
-// of its start grows 10,000 times. These are compared: the ends of motions and states on the way,
-// tensions, energies, lengths of rods, and runs with and without an observer. Each disagreement is
-// printed with its seed; any makes the exit status 1.
+// Each scene is random (tests/random_linkage.hpp), and one of four stands before a mirror. The
+// independent model is in tests/independent_linkage.hpp: directions of rods are coordinates, in
+// long double, without multipliers. A scene is skipped if its loops come near a singular position,
+// or if a disturbance of its start grows 10,000 times. These are compared: the ends of motions and
+// states on the way, tensions, energies, lengths of rods, and runs with and without an observer.
+// Each disagreement is printed with its seed; any makes the exit status 1.
 #include <chrono>
 #include <map>
 
@@ -18,6 +18,7 @@
 #include "qddot/scene/scene_file.hpp"
 #include "tests/fuzz/printed_comparisons.hpp"
 #include "tests/linkage_comparison.hpp"
+#include "tests/mirrored_linkage.hpp"
 
 namespace qddot {
 namespace {
@@ -84,7 +85,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     if (seconds > 0 && spent.count() > seconds) break;
-    const auto [scene, kind] = LinkageScenes(seed + i).draw();
+    const auto [scene, kind] = linkage_or_mirrored(seed + i);
     if (!choice.kind.empty() && kind != choice.kind) continue;
     if (choice.is_printed) {
       fmt::print("{}", to_toml(scene));

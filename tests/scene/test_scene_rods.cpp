@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(reductions_keep_rods_and_their_tensions) {
     const double expected = is_sloped ? -2 * 9.81 * 2 / 3. : 4 * 9.81 + 4 * 9;
     BOOST_TEST(std::abs(tensions[k] - expected) < 1e-12 * 100);
   }
-  // Pins are left out in any case, and the mirror of a plane is not used.
+  // Pins are left out in any case.
   const Model kept(scene, Reductions().without(Reduction::pins).without(Reduction::dimension));
   BOOST_TEST(kept.system().size() == 6);
 }

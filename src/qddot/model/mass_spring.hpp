@@ -52,14 +52,14 @@ struct Network {
     bool stiff = false;
     int curve = -1, number = 0;
   };
-  // A rod between two different free nodes, or from node i to a point where j < 0. Networks with
-  // rods have no zero coordinates.
+  // A rod between free nodes i and diag(image) j, or from node i to a point where j < 0.
   struct Rod {
     int i, j;
     Eigen::Vector3d point;
     double length;  // [m], > 0
     int curve = -1;
     double compliance = 0;  // [m/N], see Constraints
+    Eigen::Vector3d image = Eigen::Vector3d::Ones();
   };
   // A force factor curve(t) on a node [N], with V = -force.(x - origin).
   struct DrivenLoad {

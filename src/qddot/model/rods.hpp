@@ -6,29 +6,29 @@
 
 namespace qddot {
 
-// The rods of a network in dimension D as constraints. With d = x_j - x_i, or point - x_i, and the
-// length L of a rod,
+// The rods of a network in dimension D as constraints. With d = S x_j - x_i, where S mirrors, or
+// d = point - x_i, and the length L of a rod,
 //   g = (|d|^2 - L^2) / (2 L)
-// At g = 0 its gradients are the unit vectors +-d/L, so that lambda is the rod's tension [N].
+// d is affine in q: the sum of terms s q_u e_a over unknowns u. At g = 0 the gradients without
+// mirrors are the unit vectors +-d/L, so that lambda is the rod's tension [N].
 template <int D>
 class Rods final : public Constraints {
  public:
   using Point = Eigen::Matrix<double, D, 1>;
 
-  // Keeps references to layout and curves, which must outlive it.
+  // Keeps a reference to the curves, which must outlive it.
   Rods(const Network& network, const Layout<D>& layout, const DrivenNetwork<D>& driven)
       : driven_(driven) {
     std::vector<Eigen::Triplet<double>> entries;
     compliances_.resize(std::ssize(network.rods));
     for (const Network::Rod& rod : network.rods) {
-      const int i = layout.first(rod.i), j = rod.j < 0 ? -1 : layout.first(rod.j);
-      for (int a = 0; a < D; ++a) {
-        const auto k = static_cast<int>(rods_.size());
-        entries.emplace_back(k, i + a, 0);
-        if (j >= 0) entries.emplace_back(k, j + a, 0);
-      }
-      compliances_[std::ssize(rods_)] = rod.compliance;
-      rods_.push_back({i, j, rod.point.template head<D>(), rod.length, rod.curve});
+      const auto k = static_cast<int>(rods_.size());
+      const std::size_t first = terms_.size();
+      add_terms(rod, layout);
+      for (std::size_t t = first; t < terms_.size(); ++t)
+        entries.emplace_back(k, terms_[t].unknown, 0);
+      compliances_[k] = rod.compliance;
+      rods_.push_back({first, terms_.size(), rod.point.template head<D>(), rod.length, rod.curve});
     }
     if (compliances_.isZero(0)) compliances_.resize(0);
     pattern_.resize(std::ssize(rods_), layout.first(static_cast<int>(layout.nodes())));
@@ -80,12 +80,12 @@ class Rods final : public Constraints {
     std::vector<Curvature> all;
     for (Index k = 0; k < std::ssize(rods_); ++k) {
       const Rod& rod = rods_[static_cast<std::size_t>(k)];
-      const double bend = 1 / rod.length;
-      for (int a = 0; a < D; ++a) {
-        all.push_back({k, rod.i + a, rod.i + a, bend});
-        if (rod.j < 0) continue;
-        all.push_back({k, rod.j + a, rod.j + a, bend});
-        all.push_back({k, std::max(rod.i, rod.j) + a, std::min(rod.i, rod.j) + a, -bend});
+      for (std::size_t s = rod.first; s < rod.end; ++s) {
+        for (std::size_t t = rod.first; t <= s; ++t) {
+          if (terms_[s].axis != terms_[t].axis) continue;
+          const double value = terms_[s].factor * terms_[t].factor / rod.length;
+          all.push_back({k, terms_[s].unknown, terms_[t].unknown, value});
+        }
       }
     }
     return all;
@@ -94,39 +94,58 @@ class Rods final : public Constraints {
   const Vec& compliances() const override { return compliances_; }
 
  private:
-  // i, j: first unknowns; j < 0 at a point.
+  // factor q_unknown e_axis.
+  struct Term {
+    int unknown, axis;
+    double factor;
+  };
+  // The terms of d from `first` to before `end`, beside a point, which may move by a curve.
   struct Rod {
-    int i, j;
+    std::size_t first, end;
     Point point;
     double length;
     int curve;
   };
 
-  static Point between(const Rod& rod, const VecView& q, const std::vector<Point>& curves) {
-    if (rod.j >= 0) return q.template segment<D>(rod.j) - q.template segment<D>(rod.i);
-    const Point d = rod.point - q.template segment<D>(rod.i);
-    return rod.curve < 0 ? d : Point(d + curves[rod.curve]);
+  // Appends the terms of d, in the order of the unknowns. Those of a node and its own image add up.
+  void add_terms(const Network::Rod& rod, const Layout<D>& layout) {
+    const auto add = [&](int node, const Point& factors) {
+      for (int a = 0; a < layout.count(node); ++a) {
+        const int axis = layout.axis(node, a);
+        if (factors[axis] != 0) terms_.push_back({layout.first(node) + a, axis, factors[axis]});
+      }
+    };
+    const Point image = rod.image.template head<D>(), minus = Point::Constant(-1);
+    if (rod.j == rod.i) return add(rod.i, image + minus);
+    if (rod.j >= 0 && rod.j < rod.i) add(rod.j, image);
+    add(rod.i, minus);
+    if (rod.j > rod.i) add(rod.j, image);
   }
-  static Point apart(const Rod& rod, const VecView& v, const std::vector<Point>& rates) {
-    if (rod.j >= 0) return v.template segment<D>(rod.j) - v.template segment<D>(rod.i);
-    const Point w = -v.template segment<D>(rod.i);
-    return rod.curve < 0 ? w : Point(w + rates[rod.curve]);
+
+  Point sum(const Rod& rod, const VecView& x, Point d) const {
+    for (std::size_t t = rod.first; t < rod.end; ++t)
+      d[terms_[t].axis] += terms_[t].factor * x[terms_[t].unknown];
+    return d;
   }
-  // Row k is d/L for the unknowns of j and -d/L for those of i, in the order of the unknowns.
+  Point between(const Rod& rod, const VecView& q, const std::vector<Point>& curves) const {
+    return sum(rod, q, rod.curve < 0 ? rod.point : Point(rod.point + curves[rod.curve]));
+  }
+  Point apart(const Rod& rod, const VecView& v, const std::vector<Point>& rates) const {
+    return sum(rod, v, rod.curve < 0 ? Point(Point::Zero()) : rates[rod.curve]);
+  }
   template <class Difference>
   void set_rows(GradientMatrix& rows, const Difference& difference) const {
     double* value = rows.valuePtr();
     for (const Rod& rod : rods_) {
       const Point row = difference(rod) / rod.length;
-      const auto write = [&](const Point& x) { value = std::copy(x.data(), x.data() + D, value); };
-      if (rod.j >= 0 && rod.j < rod.i) write(row);
-      write(-row);
-      if (rod.j > rod.i) write(row);
+      for (std::size_t t = rod.first; t < rod.end; ++t)
+        *value++ = terms_[t].factor * row[terms_[t].axis];
     }
   }
 
   const DrivenNetwork<D>& driven_;
   std::vector<Rod> rods_;
+  std::vector<Term> terms_;
   Vec compliances_;
   GradientMatrix pattern_;
 };

@@ -90,6 +90,11 @@ Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;
 Model& Model::operator=(Model&&) noexcept = default;
 
+Model Model::with_system(std::shared_ptr<const System> system) && {
+  pieces_->system = std::move(system);
+  return std::move(*this);
+}
+
 const System& Model::system() const { return *pieces_->system; }
 const State& Model::initial() const { return pieces_->initial; }
 int Model::dimension() const { return pieces_->dimension; }
@@ -209,7 +214,17 @@ const std::vector<std::size_t>& Model::general_springs() const { return pieces_-
 const std::vector<std::size_t>& Model::rods() const { return pieces_->rods; }
 
 Vec Model::tensions(const State& state) const {
-  return ConstraintForces(*pieces_->system).at(state);
+  return tensions_by(ConstraintForces(*pieces_->system).at(state));
+}
+
+Vec Model::tensions_by(const Vec& multipliers) const {
+  if (pieces_->is_own) return multipliers;
+  Vec tensions(std::ssize(pieces_->shares));
+  for (Index k = 0; k < tensions.size(); ++k) {
+    const auto& [constraint, share] = pieces_->shares[static_cast<std::size_t>(k)];
+    tensions[k] = share * multipliers[constraint];
+  }
+  return tensions;
 }
 
 std::vector<std::size_t> Model::massless_nodes() const {

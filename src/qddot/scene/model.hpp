@@ -46,6 +46,9 @@ class Model {
   Model(Model&&) noexcept;
   Model& operator=(Model&&) noexcept;
 
+  // The same model with another system of the same unknowns in place of its own.
+  Model with_system(std::shared_ptr<const System> system) &&;
+
   // The system that is integrated; it may consist of blocks (see System::blocks).
   const System& system() const;
   // Its positions and velocities at t = 0.
@@ -92,6 +95,8 @@ class Model {
   // entry.
   const std::vector<std::size_t>& rods() const;
   Vec tensions(const State& state) const;
+  // The tensions of these rods from the system's multipliers there. Images in a mirror share one.
+  Vec tensions_by(const Vec& multipliers) const;
 
   // Massless nodes that have unknowns, ascending: most methods cannot run them.
   std::vector<std::size_t> massless_nodes() const;
@@ -107,7 +112,7 @@ class Model {
   std::vector<Index> unknowns_by_part() const;
 
  private:
-  std::unique_ptr<const reduce::Pieces> pieces_;
+  std::unique_ptr<reduce::Pieces> pieces_;
 };
 
 }  // namespace qddot

@@ -64,7 +64,7 @@ void Strains::see(const State& state) {
 void Strains::see_rods(const State& state) {
   const std::vector<std::size_t>& rods = model_.rods();
   if (rods.empty()) return;
-  const Vec& tensions = rods_.at(state);
+  const Vec tensions = model_.tensions_by(rods_.at(state));
   for (std::size_t k = 0; k < rods.size(); ++k) {
     SpringExtremes& own = extremes_[rods[k]];
     keep(own.largest_tension, tensions[static_cast<Index>(k)], state.t, 1);

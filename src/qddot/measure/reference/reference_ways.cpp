@@ -13,6 +13,7 @@
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/random_times.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {

@@ -78,7 +78,7 @@ void FoldedSprings::chain_images(double tolerance) {
                     half_.images[static_cast<std::size_t>(b)].original);
   });
   struct Image {
-    std::uint64_t kind;  // the higher end, mirror and validity
+    std::uint64_t kind;  // the higher end, mirror, validity and whether it is a rod
     double rest_length;
     int e;
     bool operator<(const Image& other) const {
@@ -102,8 +102,9 @@ void FoldedSprings::chain_images(double tolerance) {
         const PartSprings::One spring = drawn_.springs[e];
         const auto high = static_cast<std::uint64_t>(std::max(own.a, own.b));
         const auto holds = static_cast<std::uint64_t>(spring.holds);
-        images.push_back(
-            {high << 16 | std::uint64_t{own.mirror.minus} << 8 | holds, spring.law.rest_length, e});
+        const std::uint64_t kind = high << 16 | std::uint64_t{own.mirror.minus} << 8 | holds << 1 |
+                                   (spring.law.rigid ? 1 : 0);
+        images.push_back({kind, spring.law.rest_length, e});
       }
     }
     std::ranges::sort(images, std::less<>());

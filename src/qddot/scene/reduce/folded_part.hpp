@@ -43,6 +43,7 @@ struct FoldedSpring {
   SpringLaw law;
   Holds holds;
   bool stiff;
+  int first;  // the part's number of the first of those that it stands for
 };
 
 // The springs of a part folded along its mirrors. One stands for each set of images, with the sum
@@ -64,6 +65,12 @@ class FoldedSprings {
     }
   }
   std::size_t count() const { return count_; }
+  // The part's numbers of all that a spring stands for.
+  std::vector<int> images_of(const FoldedSpring& spring) const {
+    std::vector<int> all = {spring.first};
+    while (!next_.empty() && next(all.back()) != none) all.push_back(next(all.back()));
+    return all;
+  }
 
  private:
   FoldedEnds ends(int e) const {
@@ -78,7 +85,7 @@ class FoldedSprings {
   // The spring that begins a sum, with all that it stands for.
   FoldedSpring sum_at(int e) const {
     const auto [drawn_ends, law, holds, stiff] = drawn_.springs[e];
-    FoldedSpring sum{ends(e), law, holds, stiff};
+    FoldedSpring sum{ends(e), law, holds, stiff, e};
     if (next_.empty()) return sum;
     for (int more = next(e); more != none; more = next(more)) {
       const PartSprings::One other = drawn_.springs[more];

@@ -264,7 +264,8 @@ class MirrorSearch {
     return nearly(one.rest_length, two.rest_length, tolerance_) &&
            nearly(one.stiffness, two.stiffness, rounding * one.stiffness) &&
            nearly(one.quartic, two.quartic, rounding * one.quartic) &&
-           nearly(one.damping, two.damping, rounding * one.damping) && drawn.holds == image.holds;
+           nearly(one.damping, two.damping, rounding * one.damping) && drawn.holds == image.holds &&
+           one.rigid == two.rigid;
   }
 
   static constexpr double coarse = 1e-7;

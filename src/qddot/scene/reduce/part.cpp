@@ -57,18 +57,19 @@ class FoldedCurves {
 void add_spring(const FoldedSpring& spring, const FoldedNodes& half,
                 const std::vector<int>& numbers, FoldedCurves& curves, Network& network) {
   const auto& [a, b, mirror] = spring.ends;
-  const auto& [ends, law, holds, stiff] = spring;
+  const auto& [ends, law, holds, stiff, first] = spring;
   const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
   const int i = numbers[from], j = numbers[to];
   const Eigen::Vector3d signs = mirror.diagonal();
-  if (law.rigid) {  // in a part without mirrors
+  if (law.rigid) {
     const std::size_t pin = i == no_number ? from : to;
     const bool is_anchor = i == no_number || j == no_number;
-    network.rods.push_back({i == no_number ? j : i, is_anchor ? -1 : j,
-                            is_anchor ? half.y[pin] : Eigen::Vector3d(Eigen::Vector3d::Zero()),
-                            law.rest_length, is_anchor ? curves.of_node(pin, signs) : -1,
-                            law.stiffness > 0 ? 1 / law.stiffness : 0});
-  } else if (!law.is_plain()) {  // likewise
+    const Eigen::Vector3d point =
+        is_anchor ? signs.cwiseProduct(half.y[pin]) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    network.rods.push_back({i == no_number ? j : i, is_anchor ? -1 : j, point, law.rest_length,
+                            is_anchor ? curves.of_node(pin, signs) : -1,
+                            law.stiffness > 0 ? 1 / law.stiffness : 0, signs});
+  } else if (!law.is_plain()) {  // in a part without mirrors
     const std::size_t pin = i == no_number ? from : to;
     const bool is_anchor = i == no_number || j == no_number;
     network.general.push_back({i == no_number ? j : i, is_anchor ? -1 : j,
@@ -117,7 +118,7 @@ Part::Part(const DrawnPart& drawn, int dimension, const Reductions& reductions)
   if (reductions.has(Reduction::dimension)) frame = frame_of(drawn, dimension);
   mirrors_.frame = frame;
   // Springs that are images of one another need not break in one order.
-  if (reductions.has(Reduction::mirror) && drawn.springs.are_plain())
+  if (reductions.has(Reduction::mirror) && !drawn.springs.have_general())
     mirrors_ = mirrors_of(drawn, frame);
 
   const bool with_pins =
@@ -212,11 +213,22 @@ void Part::make_network(const DrawnPart& drawn, int dimension, bool with_pins) {
     const bool would_fold = may_fold && (joints[static_cast<std::size_t>(spring.ends.a)] ||
                                          joints[static_cast<std::size_t>(spring.ends.b)]);
     if (would_fold) spring.holds = Holds::in_tension;
+    if (spring.law.rigid) note_rods(spring, springs, drawn);
     add_spring(spring, half, numbers, curves, network);
   });
   for (int e = 0; e < drawn.springs.size(); ++e) {
     if (drawn.springs.law(e).is_general()) general_.push_back(drawn.springs.number(e));
-    if (drawn.springs.law(e).rigid) rods_.push_back(drawn.springs.number(e));
+  }
+}
+
+// The images of a rod have one constraint, which holds the sum of their tensions.
+void Part::note_rods(const FoldedSpring& rod, const FoldedSprings& springs,
+                     const DrawnPart& drawn) {
+  const std::vector<int> images = springs.images_of(rod);
+  const double share = 1 / static_cast<double>(images.size());
+  for (const int e : images) {
+    rods_.push_back(drawn.springs.number(e));
+    shares_.push_back({std::ssize(network_.rods), share});
   }
 }
 

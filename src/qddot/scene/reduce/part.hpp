@@ -19,6 +19,15 @@ namespace qddot::reduce {
 struct DrawnEnergies;
 struct FoldedNodes;
 
+// The tension of a rod, as a share of the multiplier of a constraint.
+struct RodShare {
+  Index constraint;
+  double share;
+};
+
+class FoldedSprings;
+struct FoldedSpring;
+
 // A part's motion in the fewest unknowns q. Every node's position is an affine function of them,
 //   x_i = origin + frame.origin + axes diag(signs_i) y_original(i),   in short x = P q + c.
 // The originals are the nodes on one side of each mirror. The energy of all springs, written in q,
@@ -54,8 +63,10 @@ class Part {
   // The numbers, in the list that its springs were drawn from, of those that are not plain, in the
   // order of their phases (Switching).
   const std::vector<int>& general() const { return general_; }
-  // The numbers of its rods, in the order of its system's constraints.
+  // The numbers of its rods, in the order of its system's constraints; and the share of each in the
+  // multiplier of its constraint.
   const std::vector<int>& rods() const { return rods_; }
+  const std::vector<RodShare>& shares() const { return shares_; }
   bool is_loaded() const { return is_loaded_; }
   // Whether K is constant though springs on a line have rest lengths (see straight.hpp).
   bool is_straightened() const { return is_straightened_; }
@@ -102,6 +113,7 @@ class Part {
   };
 
   void make_network(const DrawnPart& drawn, int dimension, bool with_pins);
+  void note_rods(const FoldedSpring& rod, const FoldedSprings& springs, const DrawnPart& drawn);
   void set_initial(const DrawnPart& drawn, const FoldedNodes& half, const std::vector<int>& numbers,
                    Index size);
 
@@ -125,6 +137,7 @@ class Part {
   std::vector<Unknowns> layout_;  // of the originals
   std::vector<int> general_;      // springs
   std::vector<int> rods_;         // likewise
+  std::vector<RodShare> shares_;  // of the rods
   Network network_;               // until the system is made of it
   std::vector<bool> is_held_;
   std::unique_ptr<System> system_;

@@ -56,9 +56,9 @@ class SpringEnds {
             std::ranges::upper_bound(all, std::max(a, b), {}, high_of)};
   }
   int high(int e) const { return std::max(springs_.ends(e)[0], springs_.ends(e)[1]); }
-  std::tuple<double, double, double, double, Holds> key(int e) const {
+  std::tuple<double, double, double, double, Holds, bool> key(int e) const {
     const auto [ends, law, holds, stiff] = springs_[e];
-    return {law.rest_length, law.stiffness, law.quartic, law.damping, holds};
+    return {law.rest_length, law.stiffness, law.quartic, law.damping, holds, law.rigid};
   }
 
   const PartSprings& springs_;

@@ -39,10 +39,10 @@ class PartSprings {
   const SpringLaw& law(int e) const { return drawn(e).law; }
   // The number of spring e in the list.
   int number(int e) const { return chosen_[static_cast<std::size_t>(e)]; }
-  // Whether all laws are plain.
-  bool are_plain() const {
-    return std::ranges::all_of(
-        chosen_, [&](int e) { return (*all_)[static_cast<std::size_t>(e)].law.is_plain(); });
+  // Whether one of them may break, go slack, or has a cubic term.
+  bool have_general() const {
+    return std::ranges::any_of(
+        chosen_, [&](int e) { return (*all_)[static_cast<std::size_t>(e)].law.is_general(); });
   }
   // Whether one of them is a rod.
   bool have_rods() const {

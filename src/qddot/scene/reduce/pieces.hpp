@@ -54,8 +54,11 @@ struct Pieces {
   std::vector<DrivenSpring> driven_springs{};
   // The scene's numbers of the springs that are not plain, by the numbers of their phases.
   std::vector<std::size_t> general{};
-  // The scene's numbers of the rods, in the order of parts and of their constraints.
+  // The scene's numbers of the rods, in the order of parts and of their constraints; and the share
+  // of each in the multiplier of a constraint of the system.
   std::vector<std::size_t> rods{};
+  std::vector<RodShare> shares{};
+  Index constraints = 0;
   std::vector<TimeCurve> curves{};  // of the scene
   std::shared_ptr<const System> system{};
   // [J], of springs between pinned nodes that rest, and of the parts' origins.

@@ -8,7 +8,7 @@
 
 namespace qddot {
 
-// Reductions of a scene that do not change its motion; the last one not by more than asked for.
+// Reductions of a scene that do not change its motion; the last two not by more than asked for.
 enum class Reduction {
   pins,                // pinned nodes are no unknowns
   duplicates,          // springs between the same nodes are one, springs of no stiffness none
@@ -20,12 +20,13 @@ enum class Reduction {
   constant_stiffness,  // K is the same everywhere, and is factorised once
   falling,             // a part to which nothing is pinned falls in closed form
   rods,                // stiff springs are rods; only of answers to an accuracy (solve_with_rods)
+  linear,              // small motions are sums of modes; likewise (solve_linear)
 };
 
 // The names of the reductions, in the order of Reduction.
-inline constexpr std::array<std::string_view, 10> reduction_names = {
-    "pins",      "duplicates", "massless",           "free_flight", "parts",
-    "dimension", "mirror",     "constant_stiffness", "falling",     "rods"};
+inline constexpr std::array<std::string_view, 11> reduction_names = {
+    "pins",   "duplicates",         "massless", "free_flight", "parts", "dimension",
+    "mirror", "constant_stiffness", "falling",  "rods",        "linear"};
 
 constexpr std::string_view name(Reduction reduction) {
   return reduction_names[static_cast<std::size_t>(reduction)];

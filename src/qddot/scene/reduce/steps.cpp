@@ -158,6 +158,9 @@ void Steps::note_general(const Part& part) {
       part.general(), [](const SpringLaw& law) { return law.is_general(); }, pieces_.general);
   note(
       part.rods(), [](const SpringLaw& law) { return law.rigid; }, pieces_.rods);
+  for (const auto& [constraint, share] : part.shares())
+    pieces_.shares.push_back({pieces_.constraints + constraint, share});
+  if (!part.shares().empty()) pieces_.constraints = pieces_.shares.back().constraint + 1;
 }
 
 std::vector<PartMembers> Steps::divide() {
