@@ -27,10 +27,11 @@ struct StiffScene {
 };
 
 // Makes scenes whose stiff springs start at rest lengths that no velocity changes, so that rods
-// could be in their place.
+// could be in their place; or, if they are to vibrate, with a stretch and with dashpots.
 class StiffScenes : SceneDraws {
  public:
-  explicit StiffScenes(std::uint64_t seed) : SceneDraws(seed) {}
+  explicit StiffScenes(std::uint64_t seed, bool vibrate = false)
+      : SceneDraws(seed), vibrate_(vibrate) {}
 
   static const std::vector<std::string>& kinds() {
     static const std::vector<std::string> all = {"cloth", "chain", "tree", "net", "ring", "spin"};
@@ -52,6 +53,7 @@ class StiffScenes : SceneDraws {
     const double between = set_laws(ratio);
     if (!is_held || is(0.5)) set_velocities(!is_held);
     damp_some(ratio);
+    if (vibrate_) set_off(between);
     const double times = uniform(0.2, 3);
     scene_.until = times * std::sqrt(extent() / acceleration_);
     return {scene_, kind, between, ratio};
@@ -89,7 +91,9 @@ class StiffScenes : SceneDraws {
   double set_laws(double ratio);
   void set_velocities(bool spins);
   void damp_some(double ratio);
+  void set_off(double between);
 
+  bool vibrate_;
   double spacing_ = 1, typical_mass_ = 1;
   double acceleration_ = 9.81;  // a typical one [m/s^2]
   double soft_ = 1;             // a typical stiffness of the others [N/m]
@@ -330,6 +334,21 @@ inline void StiffScenes::set_velocities(bool spins) {
   }
   for (std::size_t i = 0; i < scene_.nodes.size(); ++i)
     scene_.nodes[i].velocity = v.segment<3>(static_cast<Eigen::Index>(3 * i));
+}
+
+// A stretch, velocities beside in some scenes, and dashpots of one ratio on all stiff springs.
+inline void StiffScenes::set_off(double between) {
+  const double strain = power(-6, -2.3), zeta = power(-2, 0.3);
+  const bool is_pushed = is(0.3);
+  for (Spring& spring : scene_.springs) {
+    SpringLaw& law = spring.law;
+    if (!(law.stiffness > between)) continue;
+    law.rest_length *= 1 + strain * uniform(-1, 1);
+    law.damping = 2 * zeta * std::sqrt(law.stiffness * typical_mass_);
+    Node& node = scene_.nodes[spring.nodes[1]];
+    const double w = std::sqrt(law.stiffness / typical_mass_);
+    if (is_pushed && !node.pinned) node.velocity += vector(strain * law.rest_length * w);
+  }
 }
 
 // Air in some scenes; dashpots on soft springs or, by one time for all, also on the stiff ones.

@@ -19,7 +19,7 @@
 #include "experiments/advise/advice_words.hpp"
 #include "experiments/kit/allowed_options.hpp"
 #include "experiments/kit/program.hpp"
-#include "qddot/measure/advice/solve_with_rods.hpp"
+#include "qddot/measure/advice/lesser_answer.hpp"
 #include "qddot/measure/speed/chart_words.hpp"
 #include "qddot/scene/invalid_input.hpp"
 
@@ -54,19 +54,21 @@ const Columns<Advice>& advice_columns() {
   return columns;
 }
 
-// Says at which accuracies rods may stand for stiff springs, as `simulate --accuracy` has them.
-void print_rods(const Subject& subject, const Reductions& reductions,
-                const std::vector<double>& accuracies, AccuracyOf of) {
+// Says at which accuracies something may be left out, as `simulate --accuracy` has it.
+void print_lesser(const Subject& subject, const Reductions& reductions,
+                  const std::vector<double>& accuracies, AccuracyOf of) {
   for (const double accuracy : accuracies) {
-    const auto found = solve_with_rods(subject.start(), reductions, subject.until,
+    const auto found = solve_with_less(subject.start(), reductions, subject.until,
                                        {.accuracy = accuracy, .of = of});
     if (!found) continue;
-    fmt::print(
-        "{:.0e}: with rods in place of {} stiff springs {} at {} takes {}, and the error is "
-        "at most {:.1e}\n",
-        accuracy, found->rods, found->answer.method->name,
-        knob_in_words(*found->answer.method, found->answer.value),
-        time_in_words(found->answer.seconds.run), found->answer.error_estimate);
+    const Answer& answer = found->answer;
+    const std::string how =
+        found->by == Reduction::linear
+            ? "as a linear motion, mode by mode, it"
+            : fmt::format("with rods in place of {} stiff springs {} at {}", found->rods,
+                          answer.method->name, knob_in_words(*answer.method, answer.value));
+    fmt::print("{:.0e}: {} takes {}, and the error is at most {:.1e}\n", accuracy, how,
+               time_in_words(answer.seconds.run), answer.error_estimate);
   }
 }
 
@@ -105,7 +107,7 @@ int main(int argc, char** argv) {
     progress().wipe();
     print_scene(all, subject);
     print_advice(all, scene, subject.until);
-    print_rods(subject, reductions_of(*scene), accuracies, bounded);
+    print_lesser(subject, reductions_of(*scene), accuracies, bounded);
     if (csv) {
       for (const Advice& advice : all.for_each) advice_columns().write_row(*csv, advice);
       nlohmann::json origin = p.origin(subject);

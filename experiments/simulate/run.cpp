@@ -16,8 +16,8 @@
 #include "experiments/simulate/pace.hpp"
 #include "qddot/integrators/option_table.hpp"
 #include "qddot/integrators/spring_changes.hpp"
+#include "qddot/measure/advice/lesser_answer.hpp"
 #include "qddot/measure/advice/solve.hpp"
-#include "qddot/measure/advice/solve_with_rods.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/samples.hpp"
 #include "qddot/measure/motion/simulation.hpp"
@@ -134,6 +134,9 @@ std::string estimate_in_words(const Answer& answer) {
       return fmt::format("energy error at most {:.1e}, as seen on the way", answer.error_estimate);
     case EstimateKind::rounding:
       return fmt::format("error at most {:.1e}, which is rounding", answer.error_estimate);
+    case EstimateKind::neglected:
+      return fmt::format("error at most {:.1e}, as the forces that are left out say",
+                         answer.error_estimate);
     case EstimateKind::none:
       break;
   }
@@ -157,16 +160,14 @@ int answer(const Arguments& a) {
   wait_for_answer(patience_with_an_answer);
   progress().stage("looking for the fastest run");
   const Wanted wanted{.accuracy = a.accuracy, .of = of};
-  const auto with_rods =
-      solve_with_rods(subject.start(), reductions_of(choice_of(a)), until, wanted);
-  if (with_rods) {
-    model = with_rods->model;
+  const auto lesser = solve_with_less(subject.start(), reductions_of(choice_of(a)), until, wanted);
+  if (lesser) {
+    model = lesser->model;
     made.reset();
-    made.emplace(a, every, subject.drawn, with_rods->scene, *model, until);
+    made.emplace(a, every, subject.drawn, lesser->scene, *model, until);
   }
   Outputs& output = *made;
-  const Answer answer =
-      with_rods ? with_rods->answer : solve(*model, until, wanted, &subject.start());
+  const Answer answer = lesser ? lesser->answer : solve(*model, until, wanted, &subject.start());
   progress().wipe();
   const auto why = answer.is_reached ? std::nullopt : interrupted();
   if (!answer.method) {  // no run was begun
@@ -182,7 +183,9 @@ int answer(const Arguments& a) {
     origin["energy_loss"] = answer.summary.energy_loss;
     origin["interrupted"] = why ? nlohmann::json(why->by) : nullptr;
     origin.update(about(answer, a));
-    if (with_rods) origin["rods"] = {{"count", with_rods->rods}, {"change", with_rods->change}};
+    if (lesser && lesser->by == Reduction::rods)
+      origin["rods"] = {{"count", lesser->rods}, {"change", lesser->change}};
+    if (lesser && lesser->by == Reduction::linear) origin["linear"] = {{"change", lesser->change}};
     output.finish(answer.end, answer.summary.breaks, answer.break_errors, origin);
   }
   fmt::print(
@@ -192,7 +195,7 @@ int answer(const Arguments& a) {
       knob_in_words(*answer.method, answer.value), estimate_in_words(answer),
       time_in_words(answer.seconds.run), time_in_words(answer.seconds.check),
       time_in_words(answer.seconds.pilots), answer.runs, answer.runs == 1 ? "" : "s");
-  if (with_rods) fmt::print("{}\n", with_rods->in_words());
+  if (lesser) fmt::print("{}\n", lesser->in_words());
   if (answer.is_reached) return done;
   fmt::print(stderr, "simulate: --accuracy {:g} was not reached: {}\n", *a.accuracy, answer.why);
   return why ? why->status : end_not_reached;

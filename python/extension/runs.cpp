@@ -3,7 +3,7 @@
 #include "python/extension/bindings.hpp"
 #include "python/extension/outside.hpp"
 #include "qddot/algebra/constraint_forces.hpp"
-#include "qddot/measure/advice/solve_with_rods.hpp"
+#include "qddot/measure/advice/lesser_answer.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/timing.hpp"
@@ -29,7 +29,7 @@ class Tensions {
   void see(const State& state) {
     if (!has_rods_) return;
     std::vector<double> row = none_;
-    const Vec& own = forces_.at(state);
+    const Vec own = held_.model->tensions_by(forces_.at(state));
     const std::vector<std::size_t>& rods = held_.model->rods();
     for (std::size_t k = 0; k < rods.size(); ++k) row[rods[k]] = own[static_cast<Index>(k)];
     rows_.insert(rows_.end(), row.begin(), row.end());
@@ -171,24 +171,23 @@ py::dict answer(HeldModel held, const std::vector<std::string>& kept, double unt
   if (most_seconds) wanted.seconds = *most_seconds;
   const auto begin = clock_now();
   const Reductions reductions = reductions_without(kept);
-  std::optional<RodsAnswer> with_rods;
+  std::optional<LesserAnswer> lesser;
   Answer found;
   outside(threads, [&](const std::stop_token&) {
-    if (held.start) with_rods = solve_with_rods(*held.start, reductions, until, wanted);
+    if (held.start) lesser = solve_with_less(*held.start, reductions, until, wanted);
     if (most_seconds) wanted.seconds = std::max(0.0, *most_seconds - seconds_since(begin));
-    found = with_rods ? with_rods->answer : solve(*held.model, until, wanted, held.start.get());
+    found = lesser ? lesser->answer : solve(*held.model, until, wanted, held.start.get());
   });
-  if (with_rods)
-    held = {with_rods->model, std::make_shared<const Scene>(std::move(with_rods->scene))};
+  if (lesser) held = {lesser->model, std::make_shared<const Scene>(std::move(lesser->scene))};
   py::dict record(arg("is_reached") = found.is_reached, arg("why") = in_python(found.why),
                   arg("error_estimate") = found.error_estimate,
                   arg("error_estimate_kind") = name(found.error_estimate_kind),
                   arg("horizon") = found.horizon, arg("runs") = found.runs,
                   arg("seconds") = found.seconds.run, arg("seconds_in_all") = found.seconds.total(),
                   arg("summary") = record_of(found.summary), arg("left_out") = "");
-  if (with_rods) {
-    record["left_out"] = with_rods->in_words();
-    record["with_rods"] = held;
+  if (lesser) {
+    record["left_out"] = lesser->in_words();
+    record["model_of_answer"] = held;
   }
   if (!found.method) return record;
   record["method"] = found.method->name;

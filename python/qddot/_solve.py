@@ -406,7 +406,7 @@ def _answer(
 ) -> Solution:
     model = start.model()
     record = _qddot.answer(model, start.keep, end, accuracy, accuracy_of, seconds, threads)
-    start = replace(start, of_answer=record.get("with_rods"))
+    start = replace(start, of_answer=record.get("model_of_answer"))
     names = "left_out is_reached error_estimate error_estimate_kind horizon runs seconds_in_all seconds"
     about: dict[str, Any] = {name: record[name] for name in names.split()}
     about["accuracy"] = accuracy

@@ -2,6 +2,7 @@
 //
 //   fuzz_rods_answers --count 300 --seed 1
 //   fuzz_rods_answers --kind chain --longer 5 --seconds 3600 --list
+//   fuzz_rods_answers --vibrating --count 300 --seed 1
 //
 // Each scene is random (tests/random_stiff.hpp). Its motion with all springs comes from two
 // adaptive methods of high order that resolve all vibrations. Twice their difference is the truth's
@@ -21,6 +22,7 @@
 
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/ended_vibration.hpp"
 #include "qddot/measure/advice/solve_with_rods.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
@@ -42,7 +44,7 @@ struct Choice {
   std::string kind;
   double patience = 30;  // seconds for each run of the truth
   double longer = 1;     // factor of end times
-  bool is_printed = false, is_listed = false;
+  bool is_printed = false, is_listed = false, vibrate = false;
 };
 
 // The motion with all springs, at its end.
@@ -86,9 +88,14 @@ struct RodsTruth {
   Scene scene{};
 };
 
-RodsTruth rods_truth(const StiffScene& drawn, const Truth& truth, double seconds) {
+RodsTruth rods_truth(const StiffScene& drawn, const Truth& truth, double seconds, bool vibrates) {
   RodsTruth rods{.scene = drawn.scene};
   make_rods_above(drawn.between, rods.scene);
+  if (vibrates) {
+    const auto laid = laid_on_rods(rods.scene, {});
+    if (!laid) return rods;
+    rods.scene = *laid;
+  }
   try {
     validate_rods(rods.scene, "");
   } catch (const InvalidInput&) {
@@ -118,7 +125,7 @@ struct Tally {
   std::int64_t answered = 0, accurate = 0, bounded = 0, change_bounded = 0, change_known = 0;
   std::vector<double> ratios{}, change_ratios{};  // bound over what is true
 
-  void add(double accuracy, double error, double change, const RodsAnswer& answer,
+  void add(double accuracy, double error, double change, const LesserAnswer& answer,
            double truth_error) {
     ++answered;
     accurate += error <= accuracy + truth_error;
@@ -208,7 +215,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     if (seconds > 0 && spent.count() > seconds) break;
-    StiffScene drawn = StiffScenes(seed + i).draw();
+    StiffScene drawn = StiffScenes(seed + i, choice.vibrate).draw();
     *drawn.scene.until *= choice.longer;
     if (!choice.kind.empty() && drawn.kind != choice.kind) continue;
     if (choice.is_printed) {
@@ -222,7 +229,7 @@ int fuzz(std::uint64_t count, std::uint64_t seed, double seconds, const Choice& 
       ++results.unknown;
       continue;
     }
-    const RodsTruth rods = rods_truth(drawn, *truth, choice.patience);
+    const RodsTruth rods = rods_truth(drawn, *truth, choice.patience, choice.vibrate);
     ask(drawn, seed + i, *truth, rods, choice, results);
     std::fflush(stdout);
   }
@@ -254,6 +261,7 @@ int main(int argc, char** argv) {
   app.add_option("--patience", choice.patience, "the longest time in s for each true motion")
       ->capture_default_str();
   app.add_option("--longer", choice.longer, "a factor of the end times")->capture_default_str();
+  app.add_flag("--vibrating", choice.vibrate, "stiff springs start with a stretch, and dashpots");
   app.add_flag("--print", choice.is_printed, "print the scene files and compare nothing");
   app.add_flag("--list", choice.is_listed, "print all answers and refusals");
   CLI11_PARSE(app, argc, argv);

@@ -36,6 +36,9 @@ class LinearMotion {
   // The same into `to`, another state; allocates nothing if both have been used before.
   void propagate(const State& from, double duration, State& to, Scratch& scratch) const;
 
+  // The modes U, one in each column, and w^2 [rad^2/s^2], ascending.
+  const Eigen::MatrixXd& modes() const { return u_; }
+  const Vec& squares() const { return squares_; }
   // The largest frequency, or rate of growth, of a mode [rad/s].
   double fastest() const;
 

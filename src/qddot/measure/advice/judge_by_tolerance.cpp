@@ -135,15 +135,7 @@ bool Search::judge_in_closed_form(double accuracy) {
   if (!trial.reached_end()) return false;
   runs_.measure_by(trial);
   const Stage& stage = runs_.stage();
-  // A motion computed mode by mode has w_max^2 to its last digit. So a slower frequency w has an
-  // error of w_max^2 / (2 w) roundings, for a time t.
-  const Scales& scales = stage.scales();
-  const double slow = scales.displacement > 0 ? scales.speed / scales.displacement : 0;
-  const double w = runs_.bound_of_w(),
-               phase = w * until_ * (slow > 0 ? std::max(1.0, w / slow) : 1);
-  // Positions are sums of many numbers as large as coordinates.
-  const double error = rules_.rest * stage.rounding() +
-                       (stage.rests() ? 0 : rules_.doubt_of_two() * machine_epsilon * (1 + phase));
+  const double error = stage.rounding_of_modes(runs_.bound_of_w());
   check_.accept(trial, {error});
   if (stage.of() == AccuracyOf::energy) {
     const double rounding = stage.energy_rounding(trial);

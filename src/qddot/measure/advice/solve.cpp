@@ -90,7 +90,8 @@ Answer of_nothing(const Model& model, double until, const Wanted& wanted) {
 }  // namespace
 
 const char* name(EstimateKind kind) {
-  constexpr const char* names[] = {"compared", "refined", "conserved", "rounding", "none"};
+  constexpr const char* names[] = {"compared", "refined",   "conserved",
+                                   "rounding", "neglected", "none"};
   return names[static_cast<int>(kind)];
 }
 

@@ -27,6 +27,7 @@ enum class EstimateKind {
   refined,    // distance to a coarser run of the same method; errors fall by its order
   conserved,  // the energy's own error, which needs no other run
   rounding,   // rounding alone, for a motion computed mode by mode
+  neglected,  // the forces beside a linear motion, see solve_linear()
   none,       // no run reached the end
 };
 const char* name(EstimateKind kind);

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "qddot/algebra/constraint_forces.hpp"
 #include "qddot/analysis/largest_frequency.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/ended_vibration.hpp"
 #include "qddot/measure/motion/interruption.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/scene/invalid_input.hpp"
@@ -25,8 +25,13 @@ namespace {
 constexpr double least_gain = 10, forces_of_step = 4;
 // Springs are stiff beside others if they are so many times stiffer.
 constexpr double least_ratio = 30;
-// The parts of the accuracy for the run with rods, and for what they change.
-constexpr double part_of_run = 0.5, part_of_change = 0.5;
+// The part of the accuracy for the run with rods.
+constexpr double part_of_run = 1 - part_of_change;
+// The part of the motion after which a vibration has to be ended at the latest: until then the
+// springs are run.
+constexpr double part_with_springs = 0.125;
+// Turns of the fastest vibration after which it is looked at for the first time.
+constexpr double first_turns = 8;
 // A run of RATTLE tells the effect of compliance if its own error is this part of the motion.
 constexpr double resolved = 0.02;
 
@@ -44,6 +49,39 @@ Scene with_rods(const Scene& start, double stiffness, bool is_compliant) {
                   .rigid = true};
   }
   return scene;
+}
+
+// A start at which springs above a stiffness may be rods, and whether it was moved there from the
+// drawn one.
+struct StartOnRods {
+  Scene start;
+  bool is_moved = false;
+};
+
+// Nothing if some of these rods are redundant, or if springs hold energy that damping cannot take
+// before the end, of which alone the accuracy must be.
+std::optional<StartOnRods> started_on_rods(const Scene& start, double stiffness,
+                                           const Reductions& reductions, AccuracyOf of) {
+  const auto is_valid = [&](const Scene& scene) {
+    try {
+      validate_rods(with_rods(scene, stiffness, false), scene.name);
+    } catch (const InvalidInput&) {
+      return false;
+    }
+    return true;
+  };
+  if (is_valid(start)) return StartOnRods{start};
+  const bool is_damped =
+      start.air_damping > 0 || std::ranges::any_of(start.springs, [&](const Spring& spring) {
+        return spring.law.damping > 0 && spring.law.stiffness > stiffness;
+      });
+  if (!is_damped || of != AccuracyOf::positions) return {};
+  const auto laid = laid_on_rods(with_rods(start, stiffness, false), reductions);
+  if (!laid) return {};
+  StartOnRods moved{start, true};
+  moved.start.nodes = laid->nodes;
+  if (!is_valid(moved.start)) return {};
+  return moved;
 }
 
 // The largest number of rods in a row: of the shortest ways along rods between two nodes. From the
@@ -86,7 +124,7 @@ double largest_stretch(const Model& model, const Scene& compliant, const std::ve
   ConstraintForces forces(model.system());
   double largest = 0;
   const auto see = [&](const State& state) {
-    const Vec& tensions = forces.at(state);
+    const Vec tensions = model.tensions_by(forces.at(state));
     for (std::size_t k = 0; k < model.rods().size(); ++k) {
       const double stiffness = compliant.springs[model.rods()[k]].law.stiffness;
       if (stiffness > 0)
@@ -146,11 +184,8 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
     if (!stretched.reached_end()) continue;
     const double stretch =
         std::max(stretch_of_answer, largest_stretch(*rigid, compliant_scene, run.path));
-    double least = rods_alone.scales().displacement;
-    for (const PartScale& part : rods_alone.scales().parts) {
-      least = std::min(least, rods_alone.scales().displacement_of(part));
-    }
-    const double change = rods_alone.distance(run, stretched) + row * stretch / least;
+    const double change =
+        rods_alone.distance(run, stretched) + row * stretch / rods_alone.least_scale();
     if (last) {
       // Two steps that agree resolve it. What is small beside the accuracy need not be known
       // better.
@@ -166,27 +201,18 @@ std::optional<double> change_by_rods(const Scene& rigid_scene, const Scene& comp
 
 }  // namespace
 
-std::string RodsAnswer::in_words() const {
-  return fmt::format(
-      "left out: {} stiff springs are rods here; that changes positions by at most {:.1e} of the "
-      "motion, as a run in which they stretch says",
-      rods, change);
-}
-
-std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& reductions,
-                                          double until, const Wanted& wanted) {
+std::optional<LesserAnswer> solve_with_rods(const Scene& start, const Reductions& reductions,
+                                            double until, const Wanted& wanted) {
   if (!reductions.has(Reduction::rods) || wanted.of == AccuracyOf::energy ||
       start.starts_at_equilibrium || has_rods(start) || changes_phases(start))
     return {};
   const auto begin = clock_now();
   double fastest_of_springs = 0;  // [rad/s], known with the first gap
   for (const double stiffness : stiffness_gaps(start, least_ratio)) {
-    const Scene scene = with_rods(start, stiffness, false);
-    try {
-      validate_rods(scene, scene.name);
-    } catch (const InvalidInput&) {
-      continue;  // they hold energy, or are redundant
-    }
+    const auto at_rest = started_on_rods(start, stiffness, reductions, wanted.of);
+    if (!at_rest) continue;  // they hold energy, or are redundant
+    const bool has_vibration = at_rest->is_moved;
+    const Scene scene = with_rods(at_rest->start, stiffness, false);
     const auto model = std::make_shared<const Model>(scene, reductions);
     if (!is_constrained(model->system())) continue;
     if (fastest_of_springs == 0) {
@@ -201,20 +227,35 @@ std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& 
     Answer answer = solve(*model, until, of_run, &scene);
     if (!answer.is_reached) return {};
     const auto begin_of_check = clock_now();
+    const auto left = [&] { return wanted.seconds - seconds_since(begin); };
     std::optional<double> change;
     try {
-      change = change_by_rods(scene, with_rods(start, stiffness, true), model, reductions, until,
-                              wanted, answer, forces_of_step * 2 / fastest_of_springs,
-                              wanted.seconds - seconds_since(begin));
+      change =
+          change_by_rods(scene, with_rods(at_rest->start, stiffness, true), model, reductions,
+                         until, wanted, answer, forces_of_step * 2 / fastest_of_springs, left());
+      const double most = part_of_change * wanted.accuracy;
+      if (!change || *change > most) continue;
+      if (has_vibration) {
+        Stage stage(*model, until, wanted.of, &scene, Rules{});
+        stage.measure_by(stage.run(*answer.method, answer.value, {}));
+        const Model springs(start, reductions);
+        const double first = first_turns * 2 * std::numbers::pi / fastest_of_springs;
+        const auto more =
+            change_by_vibration({springs, *model, answer, stage, until, first,
+                                 part_with_springs * until, (most - *change) / Rules{}.doubt},
+                                left());
+        if (!more) continue;
+        *change += *more;
+      }
     } catch (const Interrupted&) {
       return {};
     }
-    if (!change || *change > part_of_change * wanted.accuracy) continue;
     answer.error_estimate += *change;
     answer.seconds.pilots += seconds_since(begin_of_check);
     const auto is_rod = [](const Spring& spring) { return spring.law.rigid; };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(scene.springs, is_rod));
-    return RodsAnswer{scene, model, std::move(answer), count, *change};
+    return LesserAnswer{Reduction::rods, scene, model,        std::move(answer),
+                        *change,         count, has_vibration};
   }
   return {};
 }

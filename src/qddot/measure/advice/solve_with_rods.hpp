@@ -1,25 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <string>
 
-#include "qddot/measure/advice/solve.hpp"
-#include "qddot/scene/model.hpp"
+#include "qddot/measure/advice/lesser_answer.hpp"
 
 namespace qddot::inline measure {
-
-// An answer whose run had rods in place of stiff springs.
-struct RodsAnswer {
-  Scene scene;                         // with the rods
-  std::shared_ptr<const Model> model;  // of it; answer.end is in its unknowns
-  Answer answer;                       // error_estimate has what the rods change
-  std::size_t rods = 0;                // how many springs they stand for
-  double change = 0;                   // a bound of what they change, a part of error_estimate
-
-  // "left out: 39 stiff springs are rods here; that changes positions by at most 1.5e-05 ...".
-  std::string in_words() const;
-};
 
 // Computes the motion of a scene as solve() does, with rods in place of springs that are much
 // stiffer than the others, if that takes much longer steps and what it changes is known to leave
@@ -31,9 +16,12 @@ struct RodsAnswer {
 // is of order 1/k and grows with the motion. And they vibrate about that length, by tau/k at most
 // at each: that adds up along a row of rods. See docs, the page on rods.
 //
+// Springs that start with energy are rods where damping takes it early and the accuracy is of the
+// end: see change_by_vibration().
+//
 // `start`: the scene as its motion starts. Positions and paths only. Takes no longer than
 // Wanted::seconds, but for the step at hand; an interruption gives nothing.
-std::optional<RodsAnswer> solve_with_rods(const Scene& start, const Reductions& reductions,
-                                          double until, const Wanted& wanted);
+std::optional<LesserAnswer> solve_with_rods(const Scene& start, const Reductions& reductions,
+                                            double until, const Wanted& wanted);
 
 }  // namespace qddot::inline measure

@@ -136,6 +136,34 @@ double Stage::rounding() const {
   return largest;
 }
 
+double Stage::rounding_of_modes(double bound_of_w) const {
+  // A motion computed mode by mode has w_max^2 to its last digit. So a slower frequency w has an
+  // error of w_max^2 / (2 w) roundings, for a time t.
+  const double slow = scales_.displacement > 0 ? scales_.speed / scales_.displacement : 0;
+  const double phase = bound_of_w * until_ * (slow > 0 ? std::max(1.0, bound_of_w / slow) : 1);
+  // Positions are sums of many numbers as large as coordinates.
+  return rules_.rest * rounding() +
+         (rests() ? 0 : rules_.doubt_of_two() * machine_epsilon * (1 + phase));
+}
+
+double Stage::least_scale() const {
+  double least = scales_.displacement;
+  for (const PartScale& part : scales_.parts)
+    least = std::min(least, scales_.displacement_of(part));
+  return least;
+}
+
+double Stage::relative(const Vec& displacements) const {
+  const std::vector<double> sizes = model_.largest_by_part(displacements);
+  double largest = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const bool has_own = i < scales_.parts.size();
+    largest = std::max(largest, sizes[i] / (has_own ? scales_.displacement_of(scales_.parts[i])
+                                                    : scales_.displacement));
+  }
+  return largest;
+}
+
 double Stage::energy_scale() const { return scales_.kinetic > 0 && !rests_ ? scales_.kinetic : 1; }
 
 double Stage::energy_error(const Trial& trial) const { return trial.energy_gap / energy_scale(); }

@@ -82,8 +82,15 @@ class Stage {
   double distance(const Trial& one, const Trial& other) const;
   // The distance at each look.
   std::vector<double> distances(const Trial& one, const Trial& other) const;
+  // The smallest displacement [m] that errors of a part are measured by.
+  double least_scale() const;
+  // The largest of small displacements of the unknowns [m], n, as a distance.
+  double relative(const Vec& displacements) const;
   // One rounding of the start, as a distance.
   double rounding() const;
+  // That of a motion computed mode by mode, with `bound_of_w` no less than the largest frequency
+  // [rad/s].
+  double rounding_of_modes(double bound_of_w) const;
   // Whether nothing moves by more than the rounding of its positions.
   bool rests() const { return rests_; }
 
