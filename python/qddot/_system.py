@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import importlib
 import inspect
 from typing import Any, Callable, Iterator, TYPE_CHECKING
 
@@ -226,12 +227,12 @@ def callable_or_address(function: Any, name: str, count: int) -> Any:
             raise ValueError(f"{name}: the C function is a null pointer")
         return address
     if type(function).__module__ == "_cffi_backend":
-        import _cffi_backend  # type: ignore
-
-        kind = _cffi_backend.FFI().typeof(function)
+        # mypy knows its types on some systems alone.
+        foreign = importlib.import_module("_cffi_backend").FFI()
+        kind = foreign.typeof(function)
         if kind.kind != "function" or len(kind.args) != count + 1:
             raise ValueError(f"{name}: it is {kind.cname}; allowed is {c_type}")
-        address = int(_cffi_backend.FFI().cast("intptr_t", function))
+        address = int(foreign.cast("intptr_t", function))
         if not address:
             raise ValueError(f"{name}: the C function is a null pointer")
         return address

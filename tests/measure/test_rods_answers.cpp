@@ -94,6 +94,40 @@ BOOST_AUTO_TEST_CASE(springs_stay_where_rods_would_change_too_much_or_are_not_al
                       {.accuracy = 1e-2}));
 }
 
+// A hem that starts with a stretch vibrates. Dashpots on it end that, and springs without stay.
+BOOST_AUTO_TEST_CASE(a_vibration_that_damping_ends_is_left_out) {
+  const double stiffness = 1e7, mass = 0.5 / 36;
+  const auto stretched = [&](double zeta) {
+    Scene scene = hem(stiffness);
+    for (Spring& spring : scene.springs) {
+      if (spring.law.stiffness < stiffness) continue;
+      spring.law.rest_length *= 1 - 1e-4;
+      spring.law.damping = 2 * zeta * std::sqrt(stiffness * mass);
+    }
+    return scene;
+  };
+  for (const double zeta : {0.1, 1.0}) {
+    const Scene scene = stretched(zeta);
+    const auto found = solve_with_rods(scene, {}, until, {.accuracy = 1e-2});
+    BOOST_TEST_REQUIRE(found.has_value());
+    BOOST_TEST(found->has_vibration);
+    BOOST_TEST(found->in_words().find("a vibration that damping ends") != std::string::npos);
+    const Model model(scene);
+    State state = model.initial();
+    // Its tolerance is far below the change.
+    make_integrator(*find_method("arkode_erk8"), model.system(), {.rtol = 1e-10})
+        ->advance(state, until);
+    const double error = apart(scene, found->answer.nodes, model.expand(state));
+    BOOST_TEST(error <= found->answer.error_estimate);
+    BOOST_TEST(found->answer.error_estimate <= 1e-2);
+    // The vibration itself is on the way.
+    BOOST_TEST(
+        !solve_with_rods(scene, {}, until, {.accuracy = 1e-2, .of = AccuracyOf::path}).has_value());
+  }
+  // So little damping leaves it to the end.
+  BOOST_TEST(!solve_with_rods(stretched(1e-6), {}, until, {.accuracy = 1e-3}).has_value());
+}
+
 BOOST_AUTO_TEST_CASE(it_says_what_is_left_out) {
   const auto with_rods = solve_with_rods(hem(1e7), {}, until, {.accuracy = 1e-2});
   BOOST_TEST_REQUIRE(with_rods.has_value());

@@ -208,6 +208,24 @@ class Scenes(Programs):
             if (drawn, without) == ("cloth", ""):
                 self.holds(said, "pins", "x = 0.5", "449 of 898", "no direction grows")
 
+    def test_a_small_motion_is_linear_unless_that_is_forbidden(self):
+        drawn = write(
+            "small_pluck.toml",
+            'until = 2.0\n[generator]\nkind = "plucked_string"\nnodes = 12\nlength = 1\n'
+            "stiffness = 1e5\nheight = 1e-7\n",
+        )
+        asked = f"simulate --scene {drawn} --accuracy 1e-3 --final end.csv"
+        self.assertIn("left out: the motion is linear here", self.done(asked).stdout)
+        linear, origin = table("end.csv"), sidecar("end.json")
+        self.assertEqual(origin["method"], "exact")
+        self.assertEqual(origin["error_estimate_kind"], "neglected")
+        self.assertLessEqual(origin["linear"]["change"], 5e-4)
+        kept = self.done(f"{asked} --no-reduce linear").stdout
+        self.assertNotIn("left out", kept)
+        for one, other in zip(linear, table("end.csv")):
+            # Displacements are up to a tenth of a micrometre.
+            self.assertLess(abs(float(one["z"]) - float(other["z"])), 2e-3 * 1e-7)
+
     def test_options_reach_the_methods_that_take_them(self):
         line = "simulate --scene orbit --until 0.1 --method "
         for more in (

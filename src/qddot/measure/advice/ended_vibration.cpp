@@ -7,6 +7,8 @@
 
 #include "qddot/algebra/multipliers.hpp"
 #include "qddot/integrators/registry.hpp"
+#include "qddot/measure/advice/rules.hpp"
+#include "qddot/measure/advice/trial.hpp"
 #include "qddot/measure/motion/deadline.hpp"
 #include "qddot/measure/motion/timing.hpp"
 #include "qddot/measure/speed/measurement.hpp"
@@ -60,28 +62,40 @@ std::optional<double> change_by_vibration(const VibrationCheck& check, double se
     return integrator.advance(state, until, {}, deadline.token()).outcome == Outcome::reached_end;
   };
   const auto distance = [&](const std::vector<Node>& a, const std::vector<Node>& b) {
-    return position_error(a, b, check.scales.scales());
-  };
-  const auto make = [](const char* method, double value, const Model& model) {
-    const Method& chosen = *find_method(method);
-    return make_integrator(chosen, model.system(), options_for(chosen, value, model));
+    return position_error(a, b, check.scales);
   };
   const double rtol = std::max(least_accuracy, rules.small * rules.small * check.tolerance);
-  const auto springs = make("arkode_erk8", rtol, check.springs);
+  const auto make = [&](const char* method, const Model& model) {
+    const Method& chosen = *find_method(method);
+    return make_integrator(chosen, model.system(), options_for(chosen, rtol, model));
+  };
+  const auto springs = make("arkode_erk8", check.springs),
+             rods = make("arkode_erk8_rods", check.rods);
+  const auto end_of = [&](State state) -> std::optional<std::vector<Node>> {
+    if (!runs_to(*rods, state, check.until)) return {};
+    return check.rods.expand(state);
+  };
+  const auto expected = end_of(check.rods.initial());
+  if (!expected) return {};
   State state = check.springs.initial();
-  std::optional<double> last;
+  std::vector<Node> last_end = *expected;
+  double last_effect = 0;
   for (double t = check.first; t <= check.longest; t *= 2) {
     if (!runs_to(*springs, state, t)) return {};
     const std::vector<Node> nodes = check.springs.expand(state);
     State laid = check.rods.collect(nodes, t);
     if (!lay(check.rods.system(), laid)) return {};
     const double moved = distance(check.rods.expand(laid), nodes);
-    const auto rods = make(check.answer.method->name.c_str(), check.answer.value, check.rods);
-    if (!runs_to(*rods, laid, check.until)) return {};
-    const double change = moved + distance(check.rods.expand(laid), check.answer.nodes);
-    if (last && std::max(change, *last) <= check.tolerance)
-      return rules.doubt * std::max(change, *last);
-    last = change;
+    const auto end = end_of(laid);
+    if (!end) return {};
+    // The vibration's effect since the last time. It goes on as before unless it is seen to fall.
+    const double effect = distance(*end, last_end);
+    const double later = effect <= last_effect / 2 ? effect : effect * check.until / t;
+    const double change = moved + distance(*end, *expected) + rules.doubt * later;
+    if (t > check.first && change <= check.tolerance) return change;
+    // What happens at once, up to the first time, is no measure of what goes on.
+    last_effect = t > check.first ? effect : 0;
+    last_end = *end;
   }
   return {};
 }

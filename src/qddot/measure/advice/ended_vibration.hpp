@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "qddot/measure/advice/solve.hpp"
-#include "qddot/measure/advice/trial.hpp"
+#include "qddot/measure/motion/error.hpp"
+#include "qddot/scene/model.hpp"
 
 namespace qddot::inline measure {
 
@@ -15,23 +15,23 @@ namespace qddot::inline measure {
 // The scene with its start laid onto its rods so; nothing if that fails. Pins stay.
 std::optional<Scene> laid_on_rods(const Scene& scene, const Reductions& reductions);
 
-// How far the answer of rods that began laid so is from the motion of springs, relative to the
-// motion at its end.
+// How far the motion of rods that begin laid so is from that of springs, relative to the motion at
+// its end.
 struct VibrationCheck {
-  const Model& springs;   // the motion as it starts, with springs
-  const Model& rods;      // of the answer
-  const Answer& answer;   // by a method of rods
-  const Stage& scales;    // of that motion
+  const Model& springs;   // as the motion starts
+  const Model& rods;      // laid so
+  const Scales& scales;   // of the motion of rods
   double until;           // [s]
   double first, longest;  // times up to which springs may run [s]; the first is doubled
-  double tolerance;       // below which the change need not be known better
+  double tolerance;       // [relative], of the change
 };
 
 // The springs run to a time, and their state is laid onto the rods, which run from there to the
-// end. The distance of both ends, and that by which the state was moved at that time, bound what
-// the vibration before changes and what is left of it. Twice the larger of two times of which one
-// is double, once both are within `tolerance`; nothing if that is not seen. No run begins after
-// `seconds`.
+// end. What the vibration changes until then is the distance from the end of rods that began at
+// once; what is left of it is how far the state was moved. Between two times, of which one is
+// double, the effect has to fall by half, or it counts as if it went on at its rate. All this
+// together bounds the change, once it is within the tolerance; nothing if that is not seen. No run
+// begins after `seconds`.
 std::optional<double> change_by_vibration(const VibrationCheck& check, double seconds);
 
 }  // namespace qddot::inline measure

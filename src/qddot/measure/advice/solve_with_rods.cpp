@@ -240,10 +240,9 @@ std::optional<LesserAnswer> solve_with_rods(const Scene& start, const Reductions
         stage.measure_by(stage.run(*answer.method, answer.value, {}));
         const Model springs(start, reductions);
         const double first = first_turns * 2 * std::numbers::pi / fastest_of_springs;
-        const auto more =
-            change_by_vibration({springs, *model, answer, stage, until, first,
-                                 part_with_springs * until, (most - *change) / Rules{}.doubt},
-                                left());
+        const auto more = change_by_vibration({springs, *model, stage.scales(), until, first,
+                                               part_with_springs * until, most - *change},
+                                              left());
         if (!more) continue;
         *change += *more;
       }
