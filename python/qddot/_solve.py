@@ -95,10 +95,10 @@ class Solution:
     energy_loss are 1 and 0 for an exact motion: one plus what it gained on the way, and what it
     had lost at the end, over the energy that the motion can turn into speed. If an accuracy was
     asked for: error_estimate bounds the relative error, error_estimate_kind says how the bound was
-    made ("compared", "refined", "conserved", "rounding", "none"), is_reached says whether it is at
-    most the accuracy, the motion is unknown from the time horizon [s] on, and left_out says in a
-    sentence whether rods stood for stiff springs (keep=["rods"] forbids it). breaks lists the
-    springs that broke, in time.
+    made ("compared", "refined", "conserved", "rounding", "neglected", "none"), is_reached says
+    whether it is at most the accuracy, the motion is unknown from the time horizon [s] on, and
+    left_out says in a sentence whether rods stood for stiff springs or modes for a small motion
+    (keep=["rods", "linear"] forbids it). breaks lists the springs that broke, in time.
     """
 
     method: str

@@ -1,4 +1,4 @@
-"""Rods in Python: scenes, methods, tensions, and rods in place of stiff springs."""
+"""Rods in Python: scenes, methods, tensions; what answers to an accuracy leave out."""
 
 import unittest
 
@@ -93,3 +93,22 @@ class InPlaceOfSprings(unittest.TestCase):
         self.assertLessEqual(answer.error_estimate, 1e-2)
         # So small an accuracy shows how the hem stretches.
         self.assertEqual(qddot.solve(scene, accuracy=1e-7).or_raise().left_out, "")
+
+
+class InPlaceOfSmallForces(unittest.TestCase):
+    """Natural modes in place of small motions."""
+
+    def test_a_small_pluck_is_linear(self):
+        scene = qddot.Scene.from_toml(
+            'until = 2\n[generator]\nkind = "plucked_string"\nnodes = 12\nlength = 1\n'
+            "stiffness = 1e5\nheight = 1e-7\n"
+        )
+        answer = qddot.solve(scene, accuracy=1e-4, save_at=[1.0, 2.0]).or_raise()
+        self.assertTrue(answer.left_out.startswith("left out: the motion is linear here"))
+        self.assertEqual((answer.method, answer.error_estimate_kind), ("exact", "neglected"))
+        kept = qddot.solve(scene, accuracy=1e-6, save_at=[1.0, 2.0], keep=["linear"]).or_raise()
+        self.assertEqual(kept.left_out, "")
+        moved = np.linalg.norm(kept.q - scene.positions, axis=2).max()
+        error = np.linalg.norm(answer.q - kept.q, axis=2).max() / moved
+        # Steps of the other method end at samples, with an accuracy of their own.
+        self.assertLessEqual(error, answer.error_estimate + 1e-6)
