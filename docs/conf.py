@@ -39,6 +39,8 @@ nitpick_ignore_regex = [
     ("cpp:identifier", r"reduce(::Part)?"),
     # Classes that methods are made from, for authors of methods.
     ("cpp:identifier", r"Splitting|NystromPair|SymmetricFormula|Stepper|SystemRun"),
+    ("cpp:identifier", r"Mass|BesideForce"),  # Mass is a Vec to users; kernels have the other
+    ("cpp:identifier", r"Vector(::.*)?"),  # Eigen's, by a name of its own
 ]
 
 html_theme = "furo"
