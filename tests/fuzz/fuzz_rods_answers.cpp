@@ -3,6 +3,7 @@
 //   fuzz_rods_answers --count 300 --seed 1
 //   fuzz_rods_answers --kind chain --longer 5 --seconds 3600 --list
 //   fuzz_rods_answers --vibrating --count 300 --seed 1
+//   fuzz_rods_answers --path --count 300 --seed 1
 //
 // Each scene is random (tests/random_stiff.hpp). Its motion with all springs comes from two
 // adaptive methods of high order that resolve all vibrations. Twice their difference is the truth's
@@ -24,8 +25,11 @@
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/ended_vibration.hpp"
 #include "qddot/measure/advice/solve_with_rods.hpp"
+#include "qddot/measure/motion/samples.hpp"
+#include "qddot/measure/motion/simulation.hpp"
 #include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/measure/reference/reference_ways.hpp"
+#include "qddot/measure/speed/measurement.hpp"
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/rods.hpp"
 #include "qddot/scene/scene_file.hpp"
@@ -44,7 +48,7 @@ struct Choice {
   std::string kind;
   double patience = 30;  // seconds for each run of the truth
   double longer = 1;     // factor of end times
-  bool is_printed = false, is_listed = false, vibrate = false;
+  bool is_printed = false, is_listed = false, vibrate = false, of_path = false;
 };
 
 // The motion with all springs, at its end.
@@ -56,6 +60,23 @@ struct Truth {
 
   double error_of(const std::vector<Node>& others) const {
     return position_error(others, nodes, solution.scales);
+  }
+  // The largest on the way of the answer's run, which is repeated with its looks.
+  double error_on_the_way(const LesserAnswer& lesser) const {
+    const Answer& answer = lesser.answer;
+    Simulation run(lesser.model, *answer.method,
+                   options_for(*answer.method, answer.value, *lesser.model));
+    std::vector<double> times;
+    for (const State& state : solution.path) times.push_back(state.t);
+    double largest = 0;
+    const auto see = [&](const State& state) {
+      const auto at = std::ranges::find(solution.path, state.t, &State::t);
+      if (at == solution.path.end()) return;
+      largest = std::max(largest, position_error(lesser.model->expand(state), model->expand(*at),
+                                                 solution.scales));
+    };
+    run.advance(solution.end.t, {merged({times, answer.looks}), see});
+    return largest;
   }
 };
 
@@ -177,8 +198,9 @@ void ask(const StiffScene& drawn, std::uint64_t seed, const Truth& truth, const 
   for (const double accuracy : accuracies) {
     if (truth.error > accuracy / 20) continue;
     ++results.cases;
+    const AccuracyOf of = choice.of_path ? AccuracyOf::path : AccuracyOf::positions;
     const auto answer =
-        solve_with_rods(drawn.scene, {}, *drawn.scene.until, {.accuracy = accuracy});
+        solve_with_rods(drawn.scene, {}, *drawn.scene.until, {.accuracy = accuracy, .of = of});
     const std::string about = fmt::format("seed {} ({}) A {:.0e} ratio {:.1e} until {:.3g} s", seed,
                                           drawn.kind, accuracy, drawn.ratio, *drawn.scene.until);
     if (!answer) {
@@ -192,7 +214,8 @@ void ask(const StiffScene& drawn, std::uint64_t seed, const Truth& truth, const 
       continue;
     }
     ++results.answered;
-    const double error = truth.error_of(answer->answer.nodes);
+    const double error =
+        choice.of_path ? truth.error_on_the_way(*answer) : truth.error_of(answer->answer.nodes);
     const std::string name = fmt::format("{:.0e}", accuracy);
     for (Tally* own :
          {&results.by_accuracy[name], &results.by_kind[drawn.kind], &results.all["all"]})
@@ -261,6 +284,7 @@ int main(int argc, char** argv) {
   app.add_option("--patience", choice.patience, "the longest time in s for each true motion")
       ->capture_default_str();
   app.add_option("--longer", choice.longer, "a factor of the end times")->capture_default_str();
+  app.add_flag("--path", choice.of_path, "ask for accuracies at all times");
   app.add_flag("--vibrating", choice.vibrate, "stiff springs start with a stretch, and dashpots");
   app.add_flag("--print", choice.is_printed, "print the scene files and compare nothing");
   app.add_flag("--list", choice.is_listed, "print all answers and refusals");

@@ -93,7 +93,7 @@ std::optional<double> change_by_vibration(const VibrationCheck& check, double se
     const double later = effect <= last_effect / 2 ? effect : effect * check.until / t;
     const double change = moved + distance(*end, *expected) + rules.doubt * later;
     if (t > check.first && change <= check.tolerance) return change;
-    // What happens at once, up to the first time, is no measure of what goes on.
+    // The effect up to the first time has the start in it, and is no measure of what goes on.
     last_effect = t > check.first ? effect : 0;
     last_end = *end;
   }

@@ -28,8 +28,8 @@ constexpr double times_verlet = 8, least_work = 5e4;
 constexpr double largest_growth = 1, clearly_larger = 3;
 // Displacements at which the growth is looked at.
 constexpr std::size_t places = 8;
-// The most nodes: more have more unknowns than `exact` accepts, in most scenes.
-constexpr std::size_t most_nodes = 4000;
+// The most nodes: the modes of more take longer than most motions, and so would a look at them.
+constexpr std::size_t most_nodes = 1000;
 
 bool may_be_linear(const System& system) {
   return system.size() > 0 && can_be_linearized(system) && !system.stiffness_is_constant() &&
@@ -104,8 +104,9 @@ class LinearMotionOf {
         all_(start, reductions.without(Reduction::dimension).without(Reduction::mirror)),
         length_(shortest_length(start)) {}
 
-  // False if there is none nearby.
+  // False if there is none nearby, or no length to compare displacements with.
   bool find_middle() {
+    if (!std::isfinite(length_)) return false;
     const auto found = nearby_equilibrium(own_.system(), own_.initial().q, length_);
     if (found) middle_ = *found;
     return found.has_value();
@@ -185,8 +186,8 @@ std::optional<LesserAnswer> solve_linear(const Scene& start, const Reductions& r
   const Runs runs(own, until, wanted.of, wanted.seconds, &start, rules);
   const double work = runs.steps_of_verlet() * runs.work_of_force();
   if (work < least_work || work_of_modes(own) > times_verlet * work) return {};
-
-  if (runs.seconds_left() <= 0) return {};
+  const auto seconds_left = [&] { return wanted.seconds - seconds_since(begin); };
+  if (seconds_left() <= 0) return {};
 
   LinearMotionOf motion(start, reductions, own);
   if (!motion.find_middle()) return {};
@@ -201,7 +202,7 @@ std::optional<LesserAnswer> solve_linear(const Scene& start, const Reductions& r
   if (exact == methods().end()) return {};
   Stage stage(*linear, until, wanted.of, &start, rules);
   try {
-    const Trial trial = stage.run(*exact, until, {.seconds = wanted.seconds});
+    const Trial trial = stage.run(*exact, until, {.seconds = seconds_left()});
     if (!trial.reached_end()) return {};
     stage.measure_by(trial);
     const double feedback = motion.feedback_along(trial.path);
