@@ -6,6 +6,7 @@
 #include "qddot/algebra/symbolic_factorization.hpp"
 #include "qddot/integrators/registry.hpp"
 #include "qddot/measure/advice/search.hpp"
+#include "qddot/measure/motion/tolerance_scales.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 
 namespace qddot::inline measure {
@@ -27,6 +28,7 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
   // Errors of implicit methods follow their tolerances less closely.
   const double doubt = method.is(Trait::implicit) ? rules_.doubt_of_two() : rules_.doubt;
   const Stage& stage = runs_.stage();
+  const double length = with_tolerance_scales({}, model_).length;
   std::vector<const Trial*> runs;
   for (double rtol = std::min(accuracy, rules_.largest_tolerance); rtol >= least_accuracy;
        rtol /= 10) {
@@ -55,6 +57,9 @@ bool Search::judge_by_tolerance(const Method& method, double accuracy, std::int6
       check_.set(Conditioning{.effect = stage.rounding(), .share = stage.rounding()});
       return false;
     }
+    // A tolerance as large as the motion controls nothing: runs whose steps stability does not
+    // bound all come to rest then.
+    if (method.is(Trait::implicit) && rtol * length > rules_.small * stage.least_scale()) continue;
     if (!runs.empty() && runs_.distance_on_the_way(*runs.back(), trial) == 0) {
       // The same steps judge nothing; more than the tolerance bounds them.
       runs.pop_back();
