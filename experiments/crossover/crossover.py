@@ -297,11 +297,12 @@ def draw_header(sheet, family, until, kinds):
     line = Line2D([], [], label="explicit and implicit equally fast", **BORDER)
     empty = Patch(facecolor=EMPTY, edgecolor="#D0D0D0", hatch="////", linewidth=0)
     empty.set_label("not reached or not certified")
+    handles = [*keys, line, empty]
     sheet.figure.legend(
-        handles=[*keys, line, empty],
+        handles=handles,
         loc="center left",
         bbox_to_anchor=(0.15 / sheet.width, 1 - 0.86 / sheet.height),
-        ncol=5,
+        ncol=5 if len(handles) <= 5 else 3,
         frameon=False,
         fontsize=9.5,
         handlelength=1.6,
