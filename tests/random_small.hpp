@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -102,7 +103,7 @@ inline bool SmallScenes::draw_start(const std::string& kind, double& size) {
   const double w = std::sqrt(1000 / 0.02);
   for (Node& node : scene_.nodes) {
     if (node.pinned) continue;
-    const double shape = std::sin(M_PI * node.position[0]);
+    const double shape = std::sin(std::numbers::pi * node.position[0]);
     const Vector u = size * (is_smooth ? Vector(shape * one) : vector(1));
     if (is_plucked) node.position += u;
     if (!is_plucked || is(0.5)) node.velocity = w * (is_smooth ? 0.1 * u : size * vector(0.3));

@@ -19,6 +19,7 @@
 #include "qddot/measure/advice/trial.hpp"
 #include "qddot/model/machine_epsilon.hpp"
 #include "qddot/scene/scene_file.hpp"
+#include "tests/fuzz/quantile.hpp"
 #include "tests/plain_springs.hpp"
 #include "tests/random_small.hpp"
 
@@ -58,12 +59,6 @@ struct Tally {
   std::int64_t scenes = 0, asked = 0, answered = 0, accurate = 0, bounded = 0;
   std::vector<double> ratios{}, gains{};  // bound over error; time by solve() over that by modes
 };
-
-double quantile(std::vector<double> all, double share) {
-  if (all.empty()) return 0;
-  std::ranges::sort(all);
-  return all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
-}
 
 void print(const std::map<std::string, Tally>& tallies) {
   fmt::print("\n{:<10} {:>7} {:>7} {:>9} {:>6} {:>9} {:>28} {:>24}\n", "kind", "scenes", "asked",

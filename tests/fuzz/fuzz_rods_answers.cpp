@@ -33,6 +33,7 @@
 #include "qddot/scene/invalid_input.hpp"
 #include "qddot/scene/rods.hpp"
 #include "qddot/scene/scene_file.hpp"
+#include "tests/fuzz/quantile.hpp"
 #include "tests/random_stiff.hpp"
 
 namespace qddot {
@@ -158,12 +159,6 @@ struct Tally {
     change_ratios.push_back(answer.change / change);
   }
 };
-
-double quantile(std::vector<double> all, double share) {
-  if (all.empty()) return not_known;
-  std::ranges::sort(all);
-  return all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
-}
 
 struct Refusals {
   std::int64_t all = 0, needless = 0;

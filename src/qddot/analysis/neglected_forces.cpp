@@ -32,9 +32,10 @@ SymmetricMatrix stiffness_at(const System& system, const Vec& q) {
   return k;
 }
 
-// The modes of one motion: their frequencies, amplitudes and shapes M^-1/2 U.
+// The modes of one motion: their frequencies under air and without, the root of P, their amplitudes
+// and shapes M^-1/2 U.
 struct Modes {
-  Vec frequency, amplitude;
+  Vec frequency, root, amplitude;
   Eigen::MatrixXd shapes;
 };
 
@@ -44,6 +45,7 @@ Modes modes_of(const SmallMotion& motion, const System& linear) {
   const double gamma = linear.damping() ? linear.damping()->air_damping() / 2 : 0;
   Modes modes;
   modes.shapes = mass.cwiseSqrt().cwiseInverse().asDiagonal() * exact.modes();
+  modes.root = exact.squares().cwiseSqrt();
   modes.frequency = (exact.squares().array() - gamma * gamma).max(0).sqrt();
   // The linear motion vibrates about the place where its forces vanish.
   Vec f(motion.middle.size());
@@ -58,7 +60,7 @@ Modes modes_of(const SmallMotion& motion, const System& linear) {
 
 // The modes of larger energy, all but what has no more than `negligible`, the root of sum (w A)^2.
 std::vector<Index> larger_ones(const Modes& modes, double negligible) {
-  const Vec size = modes.frequency.cwiseProduct(modes.amplitude);
+  const Vec size = modes.root.cwiseProduct(modes.amplitude);
   std::vector<Index> order(static_cast<std::size_t>(size.size()));
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, {}, [&](Index k) { return size[k]; });
@@ -166,7 +168,7 @@ Vec neglected_displacement(const SmallMotion& motion, double feedback, double to
   constexpr double small = 0.05, doubt = 2;
   const auto linear = linearized(motion.system, motion.middle);
   const Modes modes = modes_of(motion, *linear);
-  const Vec& w = modes.frequency;
+  const Vec& w = modes.root;
   const double time = motion.duration;
   // (P^-1)_ii^1/2 [m/J^1/2].
   const Vec compliance = (modes.shapes * w.cwiseInverse().asDiagonal()).rowwise().norm();

@@ -32,7 +32,8 @@ double feedback_rate(const System& system, const Vec& middle, const std::vector<
 //  1. The second order of r is 1/2 sum V_abc y_b y_c in modes, V = -d(U'PU)/dy. With amplitudes A,
 //     each product has two frequencies n = w_b +- w_c, and mode a answers by no more than
 //       1/4 |V_abc| A_b A_c (min(T, 2/|w_a - n|) + 2/(w_a + n)) / (2 w_a),
-//     which is its exact motion under that force, bounded. Resonances n = w_a grow with T.
+//     which is its exact motion under that force, bounded. Resonances n = w_a grow with T. Under
+//     air, w are the frequencies of damped modes, and the bound is larger by sqrt(2).
 //  2. All else is a force s whose size is seen along the motion: odd and higher orders of r, and D
 //     times the distance of 1. With the norm w^2 = e'^2 M + e'P e, w' <= |M^-1/2 s| + B w/2, so
 //       w <= T |M^-1/2 s| exp(T B/2),   |e_i| <= w (P^-1)_ii^1/2.

@@ -151,17 +151,11 @@ class LinearMotionOf {
 
  private:
   double feedback(const std::vector<Vec>& displacements) const {
-    const auto in_all = [&](const Vec& q) {
-      return all_.collect(own_.expand({0, q, Vec::Zero(q.size())}), 0).q;
-    };
-    const Vec middle = in_all(middle_);
+    // Places are an affine function of the unknowns, and velocities its linear part.
+    const auto in_all = [&](const Vec& u) { return all_.collect(own_.expand({0, middle_, u}), 0); };
+    const Vec middle = in_all(Vec::Zero(middle_.size())).q;
     std::vector<Vec> all;
-    for (const Vec& u : displacements) {
-      // A small displacement keeps its digits if it is enlarged.
-      const double largest = u.lpNorm<Eigen::Infinity>();
-      const double s = largest > 0 ? std::max(1.0, 1e-3 * length_ / largest) : 1;
-      all.emplace_back((in_all(middle_ + s * u) - middle) / s);
-    }
+    for (const Vec& u : displacements) all.push_back(in_all(u).v);
     return feedback_rate(all_.system(), middle, all, length_);
   }
 

@@ -237,7 +237,9 @@ std::optional<LesserAnswer> solve_with_rods(const Scene& start, const Reductions
       if (!change || *change > most) continue;
       if (has_vibration) {
         Stage stage(*model, until, wanted.of, &scene, Rules{});
-        stage.measure_by(stage.run(*answer.method, answer.value, {}));
+        const Trial run = stage.run(*answer.method, answer.value, {.seconds = left()});
+        if (!run.reached_end()) return {};
+        stage.measure_by(run);
         const Model springs(start, reductions);
         const double first = first_turns * 2 * std::numbers::pi / fastest_of_springs;
         const auto more = change_by_vibration({springs, *model, stage.scales(), until, first,
