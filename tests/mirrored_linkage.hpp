@@ -49,8 +49,10 @@ inline std::optional<Scene> mirrored_linkage(std::uint64_t seed) {
   join(crossing, has_rod);
   if (other != crossing) join(other, false);
   if (has_rod) {
+    // From rest, weights on pins set it off; else it might not move at all.
     for (Node& node : scene.nodes) node.velocity.setZero();
-    if (!scene.curves.empty()) return {};
+    const bool hangs = std::ranges::any_of(scene.nodes, &Node::pinned);
+    if (!scene.curves.empty() || !hangs || scene.gravity.isZero(0)) return {};
   }
   try {
     validate_rods(scene, "mirrored");
